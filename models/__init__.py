@@ -1,0 +1,1 @@
+"""Equations of a towed cable: reference simulators and reduced models."""

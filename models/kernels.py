@@ -1,0 +1,41 @@
+"""The one decorator of the compiled kernels, and where their machine code is kept.
+
+A kernel that calls kernels of other files keeps their code inside its own cache entry, which numba renews only
+when its own file changes. The cache folder therefore carries a digest of every source file of `models`: an edit
+or an upgrade can never run old code. ``NUMBA_CACHE_DIR`` set by the user wins.
+"""
+
+import hashlib
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numba
+
+_F = TypeVar("_F", bound=Callable[..., Any])
+
+
+def _cache_folder() -> Path:
+    digest = hashlib.sha256()
+    folder = Path(__file__).parent
+    for source in sorted(folder.rglob("*.py")):
+        digest.update(source.relative_to(folder).as_posix().encode())
+        digest.update(source.read_bytes())
+    base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    return base / "cable-ident" / f"kernels-{digest.hexdigest()[:16]}"
+
+
+if "NUMBA_CACHE_DIR" not in os.environ:
+    numba.config.CACHE_DIR = str(_cache_folder())
+
+
+def kernel(function: _F) -> _F:
+    """Compile at first use, keep the machine code, release the interpreter lock, divide as IEEE does."""
+    return numba.njit(cache=True, nogil=True, error_model="numpy")(function)
+
+
+def fast_kernel(function: _F) -> _F:
+    """`kernel` that may reorder sums, for loops over stations and sines; infinities and NaN stay exact."""
+    flags = {"contract", "reassoc", "nsz"}
+    return numba.njit(cache=True, nogil=True, error_model="numpy", fastmath=flags)(function)

@@ -1,0 +1,436 @@
+"""Implicit steppers of the spectral model: TR-BDF2 with error control, and Newmark with corrector.
+
+Both advance u (positions) and pi (momenta), u' = w, pi' = F(u, w, t), with the velocity w as the unknown of a
+stage: pi(w) - pi_hat - g h F(u_hat + g h w, w) = 0, so neither the ship's acceleration nor a division by a
+small step appears. TR-BDF2 is L-stable, of order 2, and carries an embedded third-order solution (Hosea and
+Shampine 1996) for its step. Newmark's average acceleration (beta 1/4, gamma 1/2) is the same stage with g = 1/2
+over the whole step, corrected until the velocity settles.
+"""
+
+import math
+
+import numpy as np
+
+from numpy.typing import NDArray
+
+from models.kernels import fast_kernel, kernel
+from models.spectral.basis import LENGTH, PITCH, TANGENT_X, TANGENT_Z, TOP_X, TOP_Z, Fields
+from models.spectral.body import body_balance, couple, end_motion
+from models.spectral.forces import TENSION, WORK_ROWS, cable_forces, cable_matrix, cable_momentum
+
+Floats = NDArray[np.float64]
+
+#: How a run ended: status codes of the kernels.
+DONE, SLACK, NO_CONVERGENCE, BUDGET, NOT_FINITE = range(5)
+
+_GAMMA = 1.0 - 1.0 / math.sqrt(2.0)
+_W = math.sqrt(2.0) / 4.0
+#: Weights of the embedded error: (b - b_hat) of TR-BDF2.
+_E1, _E2, _E3 = _W - (1.0 - _W) / 3.0, _W - (3.0 * _W + 1.0) / 3.0, _GAMMA - _GAMMA / 3.0
+_NEWTON_ITERATIONS = 8
+#: Step control: safety, and the weight of the sines' error beside the vehicle's.
+_SAFETY = 0.9
+_WAVE_WEIGHT = 0.1
+
+
+@kernel
+def evaluate(
+    f: Fields, u: Floats, w: Floats, end: Floats, pi: Floats, F: Floats, cable: Floats, station: Floats
+) -> None:
+    """Fill momentum and force at the level of the body and the sines.
+
+    `cable` (7, 2 + N) is a workspace: y, v, momentum, force, gradient of the stretch, lever, spin.
+    """
+    nb = u.size - f.sines.shape[1]
+    y, v, cable_pi, cable_F, grad = cable[0], cable[1], cable[2], cable[3], cable[4]
+    lever, spin = cable[5, :2], cable[6, :2]
+    end_motion(f, u[:nb], w[:nb], y, v, lever, spin)
+    for i in range(nb, u.size):
+        y[2 + i - nb], v[2 + i - nb] = u[i], w[i]
+    cable_forces(f, y, v, end, cable_F, station, grad)
+    cable_momentum(f, v, end, cable_pi)
+    body_balance(f, u[:nb], w[:nb], pi[:nb], F[:nb])
+    couple(f, lever, spin, cable_pi, cable_F, pi[:nb], F[:nb])
+    for i in range(nb, u.size):
+        pi[i], F[i] = cable_pi[2 + i - nb], cable_F[2 + i - nb]
+
+
+@kernel
+def momentum(f: Fields, u: Floats, w: Floats, end: Floats, pi: Floats, cable: Floats) -> None:
+    """The momentum of `evaluate` alone; keeps cable[0] at the new coordinates."""
+    nb = u.size - f.sines.shape[1]
+    y, v, cable_pi = cable[0], cable[1], cable[2]
+    lever, spin, none = cable[5, :2], cable[6, :2], np.zeros(2)
+    end_motion(f, u[:nb], w[:nb], y, v, lever, spin)
+    for i in range(nb, u.size):
+        y[2 + i - nb], v[2 + i - nb] = u[i], w[i]
+    cable_momentum(f, v, end, cable_pi)
+    unused = np.zeros(nb)
+    body_balance(f, u[:nb], w[:nb], pi[:nb], unused)
+    couple(f, lever, spin, cable_pi, none, pi[:nb], unused)
+    for i in range(nb, u.size):
+        pi[i] = cable_pi[2 + i - nb]
+
+
+@kernel
+def stage_matrix(
+    f: Fields, u: Floats, w: Floats, end: Floats, gh: float, cable: Floats, station: Floats, A: Floats, Y: Floats
+) -> None:
+    """Fill A with d(pi - gh F)/dw at a state that `evaluate` has just visited; Y (2 + N, 2 + N) is workspace."""
+    N = f.sines.shape[1]
+    nb = u.size - N
+    cable_matrix(f, end, gh, station, cable[4], Y)
+    J = np.zeros((2, nb))
+    J[0, 0], J[0, 1], J[1, 0], J[1, 1] = f.scalar[TANGENT_X], f.scalar[TANGENT_Z], -f.scalar[TANGENT_Z], f.scalar[TANGENT_X]
+    if nb == 3:
+        J[0, 2], J[1, 2] = cable[5, 0], cable[5, 1]
+    for i in range(nb):
+        for k in range(nb):
+            total = 0.0
+            for a in range(2):
+                for c in range(2):
+                    total += J[a, i] * Y[a, c] * J[c, k]
+            A[i, k] = total
+        for n in range(N):
+            A[i, nb + n] = J[0, i] * Y[0, 2 + n] + J[1, i] * Y[1, 2 + n]
+            A[nb + n, i] = Y[2 + n, 0] * J[0, i] + Y[2 + n, 1] * J[1, i]
+    for m in range(N):
+        for n in range(N):
+            A[nb + m, nb + n] = Y[2 + m, 2 + n]
+    # The body's own part by differences, with the cable's end force and momentum held: 2 or 3 columns.
+    pi0, F0, pi1, F1 = np.zeros(nb), np.zeros(nb), np.zeros(nb), np.zeros(nb)
+    b, s = u[:nb].copy(), w[:nb].copy()
+    y, v, lever, spin = np.zeros(2), np.zeros(2), np.zeros(2), np.zeros(2)
+    held_pi, held_F = np.zeros(2), cable[3, :2].copy()
+    body_balance(f, b, s, pi0, F0)
+    couple(f, cable[5, :2], cable[6, :2], held_pi, held_F, pi0, F0)
+    for k in range(nb):
+        d = 1e-6
+        s[k] += d
+        b[k] += gh * d
+        end_motion(f, b, s, y, v, lever, spin)
+        body_balance(f, b, s, pi1, F1)
+        couple(f, lever, spin, held_pi, held_F, pi1, F1)
+        for i in range(nb):
+            A[i, k] += ((pi1[i] - pi0[i]) - gh * (F1[i] - F0[i])) / d
+        s[k] -= d
+        b[k] -= gh * d
+
+
+@fast_kernel
+def factor(A: Floats, pivot: NDArray[np.int64]) -> bool:
+    """LU factors of A in place with row exchanges; False where A is singular."""
+    n = A.shape[0]
+    for k in range(n):
+        best = k
+        for i in range(k + 1, n):
+            if abs(A[i, k]) > abs(A[best, k]):
+                best = i
+        pivot[k] = best
+        if not abs(A[best, k]) > 0.0:
+            return False
+        if best != k:
+            for j in range(n):
+                A[k, j], A[best, j] = A[best, j], A[k, j]
+        inverse = 1.0 / A[k, k]
+        for i in range(k + 1, n):
+            A[i, k] *= inverse
+            m = A[i, k]
+            if m != 0.0:
+                for j in range(k + 1, n):
+                    A[i, j] -= m * A[k, j]
+    return True
+
+
+@fast_kernel
+def substitute(A: Floats, pivot: NDArray[np.int64], r: Floats) -> None:
+    """Solve with the factors of `factor`, r in place."""
+    n = A.shape[0]
+    for k in range(n):
+        p = pivot[k]
+        r[k], r[p] = r[p], r[k]
+    for i in range(n):
+        total = r[i]
+        for j in range(i):
+            total -= A[i, j] * r[j]
+        r[i] = total
+    for i in range(n - 1, -1, -1):
+        total = r[i]
+        for j in range(i + 1, n):
+            total -= A[i, j] * r[j]
+        r[i] = total / A[i, i]
+
+
+@kernel
+def ship_at(f: Fields, t: float, knots: Floats, ship: Floats, place: int, end: Floats) -> int:
+    """Fill end[:4] with the tow point's deflection and its rate in the static frame there.
+
+    `ship` (4, m, 2) are the coefficients of the cubic splines of the ship's x and z, counted from the steadily
+    towed frame; returns the knot interval, where the next search starts.
+    """
+    last = knots.size - 2
+    while place < last and t >= knots[place + 1]:
+        place += 1
+    while place > 0 and t < knots[place]:
+        place -= 1
+    d = t - knots[place]
+    a, b, c, e = ship[0, place], ship[1, place], ship[2, place], ship[3, place]
+    x = ((a[0] * d + b[0]) * d + c[0]) * d + e[0]
+    z = ((a[1] * d + b[1]) * d + c[1]) * d + e[1]
+    vx = (3.0 * a[0] * d + 2.0 * b[0]) * d + c[0]
+    vz = (3.0 * a[1] * d + 2.0 * b[1]) * d + c[1]
+    top_x, top_z = f.scalar[TOP_X], f.scalar[TOP_Z]
+    end[0] = top_x * x + top_z * z - end[4]
+    end[1] = top_x * vx + top_z * vz - end[5]
+    end[2] = -top_z * x + top_x * z
+    end[3] = -top_z * vx + top_x * vz
+    return place
+
+
+@kernel
+def solve_stage(
+    f: Fields,
+    u_hat: Floats,
+    pi_hat: Floats,
+    end: Floats,
+    gh: float,
+    tolerance: float,
+    fresh: bool,
+    w: Floats,
+    u: Floats,
+    pi: Floats,
+    F: Floats,
+    cable: Floats,
+    station: Floats,
+    A: Floats,
+    Y: Floats,
+    pivot: NDArray[np.int64],
+    counts: NDArray[np.int64],
+) -> bool:
+    """Newton's iteration for the stage velocity w, with the factors kept while they converge."""
+    n = u.size
+    r = np.empty(n)
+    previous = math.inf
+    for iteration in range(_NEWTON_ITERATIONS):
+        for i in range(n):
+            u[i] = u_hat[i] + gh * w[i]
+        evaluate(f, u, w, end, pi, F, cable, station)
+        counts[0] += 1
+        for i in range(n):
+            r[i] = pi[i] - pi_hat[i] - gh * F[i]
+        if fresh:
+            stage_matrix(f, u, w, end, gh, cable, station, A, Y)
+            counts[1] += 1
+            if not factor(A, pivot):
+                return False
+        substitute(A, pivot, r)
+        size = 0.0
+        for i in range(n):
+            w[i] -= r[i]
+            size = max(size, abs(r[i]))
+        if not size < 1e12:
+            return False
+        rate = size / previous if iteration > 0 else 1.0
+        if size <= 0.1 * tolerance or (iteration > 0 and rate < 0.9 and size * rate / (1.0 - rate) <= tolerance):
+            # The momentum is linear in the velocity, so the stage equation itself gives the force of the last
+            # correction without another sweep over the stations.
+            for i in range(n):
+                u[i] = u_hat[i] + gh * w[i]
+            momentum(f, u, w, end, pi, cable)
+            if gh > 0.0:
+                for i in range(n):
+                    F[i] = (pi[i] - pi_hat[i]) / gh
+            return True
+        fresh = iteration > 0 and rate > 0.25
+        previous = size
+    return False
+
+
+@kernel
+def winch_rate(control: Floats, times: Floats, lengths: Floats, t: float, depth: float, memory: Floats) -> float:
+    """Payout rate [m/s] over the coming control period.
+
+    `control` is (mode, period, reference depth, K_p, K_i, rate limit, least, greatest payout); mode 1 follows the
+    table, mode 2 is PI on the depth with anti-windup by holding the integral while the rate is limited.
+    `memory` is (payout, integral).
+    """
+    if control[0] == 1.0:
+        ahead = t + control[1]
+        k = 0
+        while k < times.size - 2 and times[k + 1] < ahead:
+            k += 1
+        share = min(max((ahead - times[k]) / (times[k + 1] - times[k]), 0.0), 1.0)
+        return (lengths[k] + share * (lengths[k + 1] - lengths[k]) - memory[0]) / control[1]
+    error = control[2] - depth
+    wanted = control[3] * error + control[4] * (memory[1] + error * control[1])
+    limit = control[5]
+    if abs(wanted) <= limit:
+        memory[1] += error * control[1]
+        return wanted
+    return limit if wanted > 0.0 else -limit
+
+
+@kernel
+def march(
+    f: Fields,
+    knots: Floats,
+    ship: Floats,
+    times: Floats,
+    stepper: int,
+    h: float,
+    tolerance: float,
+    budget: int,
+    control: Floats,
+    payout_t: Floats,
+    payout_l: Floats,
+    depth_0: float,
+    out: Floats,
+    shapes: Floats,
+    counts: NDArray[np.int64],
+    where: Floats,
+) -> int:
+    """March from times[0] to times[-1] and fill the results at the times.
+
+    `out` (n, 2 nb + 3): the body's coordinates and velocity, tension at the top and at the vehicle, payout;
+    `shapes` (n, 2 + N): the cable's coordinates. `stepper` 0 is TR-BDF2 with error control from the first step h,
+    1 is Newmark with the fixed step h. `counts` are evaluations, factorisations, steps and rejections; `where`
+    (2,) is the time and the station of a failure.
+    """
+    N, J = f.sines.shape[1], f.station.shape[1]
+    nb = 3 if f.body.size > 3 else 2
+    n = nb + N
+    stages = 3 if stepper == 0 else 2
+    u, pi = np.zeros((3, n)), np.zeros((3, n))
+    w, F = np.zeros((3, n)), np.zeros((3, n))
+    u_hat, pi_hat, e = np.zeros(n), np.zeros(n), np.zeros(n)
+    w_old, w_mid = np.zeros(n), np.zeros(n)
+    cable, station = np.zeros((7, 2 + N)), np.zeros((WORK_ROWS, J))
+    A, Y, pivot = np.zeros((n, n)), np.zeros((2 + N, 2 + N)), np.zeros(n, dtype=np.int64)
+    end, memory = np.zeros(7), np.zeros(2)
+    t, stop, h_old = times[0], times[-1], h
+    winch, control_time = control[0] > 0.0, t
+    error_old, rejected = 1.0, False
+    c = 2.0 * _GAMMA
+    if nb == 3:
+        u_hat[2] = f.scalar[PITCH]
+    place = ship_at(f, t, knots, ship, 0, end)
+    # A jump of the ship's speed at the start is an impulse: the momentum stays at rest.
+    if not solve_stage(
+        f, u_hat, pi_hat, end, 0.0, 1e-12, True, w[0], u[0], pi[0], F[0], cable, station, A, Y, pivot, counts
+    ):
+        return NOT_FINITE
+    for i in range(n):
+        w_old[i] = w_mid[i] = w[0, i]
+    for i in range(nb):
+        out[0, i], out[0, nb + i] = u[0, i], w[0, i]
+    out[0, 2 * nb], out[0, 2 * nb + 1] = end[6], cable[3, 0]
+    for i in range(2 + N):
+        shapes[0, i] = cable[0, i]
+    row = 1
+    sliver = 1e-9 * (stop - times[0])
+    while stop - t > sliver:
+        where[0] = t
+        if counts[2] + counts[3] >= budget:
+            return BUDGET
+        limit = stop
+        if winch:
+            if t >= control_time - 1e-9:
+                rate = winch_rate(control, payout_t, payout_l, t, depth_0 - u[0, 1], memory)
+                target = min(max(memory[0] + rate * control[1], control[6]), control[7])
+                end[5] = (target - memory[0]) / control[1]
+                control_time += control[1]
+            limit = min(stop, control_time)
+        # Land on the limit without a sliver of a last step.
+        remaining = limit - t
+        step = remaining if h >= 0.999 * remaining else (0.5 * remaining if h > 0.5 * remaining else h)
+        if stepper == 1:
+            step = min(h, remaining)
+        gh = (_GAMMA if stepper == 0 else 0.5) * step
+        ratio = step / h_old
+        error = math.inf
+        ok = True
+        for k in range(1, stages):
+            ahead = c * step if stages - k == 2 else step
+            end[4] = memory[0] + ahead * end[5]
+            place = ship_at(f, t + ahead, knots, ship, place, end)
+            for i in range(n):
+                if k == 1:
+                    u_hat[i] = u[0, i] + gh * w[0, i]
+                    pi_hat[i] = pi[0, i] + gh * F[0, i]
+                    w[1, i] = w[0, i]
+                    if stepper == 0 and ratio <= 2.0:
+                        # The quadratic through the last step's three velocities, continued.
+                        a = 1.0 + c * ratio
+                        w[1, i] *= a * (a - c) / (1.0 - c)
+                        w[1, i] += w_old[i] * (a - c) * (a - 1.0) / c + w_mid[i] * a * (a - 1.0) / (c * (c - 1.0))
+                else:
+                    u_hat[i] = u[0, i] + step * _W * (w[0, i] + w[1, i])
+                    pi_hat[i] = pi[0, i] + step * _W * (F[0, i] + F[1, i])
+                    w[2, i] = w[0, i] + (w[1, i] - w[0, i]) / c
+            ok = solve_stage(
+                f, u_hat, pi_hat, end, gh, 0.1 * tolerance, k == 1, w[k], u[k], pi[k], F[k], cable, station, A, Y,
+                pivot, counts,
+            )  # fmt: skip
+            if not ok:
+                break
+        last = stages - 1
+        if ok and stepper == 1:
+            error = 0.0
+        elif ok:
+            for i in range(n):
+                e[i] = step * (_E1 * F[0, i] + _E2 * F[1, i] + _E3 * F[2, i])
+            substitute(A, pivot, e)
+            wave = 0.0
+            for i in range(nb, n):
+                wave += 0.5 * e[i] * e[i]
+            error = max(abs(e[0]), abs(e[1]), _WAVE_WEIGHT * math.sqrt(wave)) / tolerance
+        if not error <= 1.0:
+            counts[3] += 1
+            rejected = True
+            if stepper == 1:
+                return NO_CONVERGENCE
+            h = step * (max(0.2, 0.8 * error ** (-1.0 / 3.0)) if error < 1e6 else 0.25)
+            if h < 1e-10 * (stop - times[0]):
+                return NO_CONVERGENCE
+            continue
+        # Accepted. A cable pushes nothing: stop where it would.
+        least, spot = cable[3, 0], 0.0
+        for j in range(J):
+            if not station[TENSION, j] >= least:
+                least, spot = station[TENSION, j], f.station[0, j] * f.scalar[LENGTH]
+        if not least > 0.0:
+            where[0], where[1] = t + step, spot
+            return SLACK if math.isfinite(least) else NOT_FINITE
+        while row < times.size and times[row] <= t + step + sliver:
+            s = min((times[row] - t) / step, 1.0)
+            for i in range(nb):
+                out[row, i] = (
+                    (1.0 + 2.0 * s) * (1.0 - s) ** 2 * u[0, i]
+                    + s * (1.0 - s) ** 2 * step * w[0, i]
+                    + s * s * (3.0 - 2.0 * s) * u[last, i]
+                    + s * s * (s - 1.0) * step * w[last, i]
+                )
+                out[row, nb + i] = (1.0 - s) * w[0, i] + s * w[last, i]
+                if stepper == 0:
+                    # The quadratic through the three stage velocities.
+                    out[row, nb + i] += s * (s - 1.0) * (
+                        w[0, i] / c + w[1, i] / (c * (c - 1.0)) + w[2, i] / (1.0 - c)
+                    )
+            out[row, 2 * nb], out[row, 2 * nb + 1] = end[6], cable[3, 0]
+            out[row, 2 * nb + 2] = memory[0] + s * step * end[5]
+            for i in range(2 + N):
+                shapes[row, i] = cable[0, i]
+            row += 1
+        memory[0] += step * end[5]
+        for i in range(n):
+            w_old[i], w_mid[i] = w[0, i], w[1, i]
+            u[0, i], w[0, i], pi[0, i], F[0, i] = u[last, i], w[last, i], pi[last, i], F[last, i]
+        t += step
+        counts[2] += 1
+        h_old = step
+        if stepper == 0:
+            error = max(error, 1e-3)
+            grow = _SAFETY * error ** (-0.7 / 3.0) * error_old ** (0.4 / 3.0)
+            h = step * min(1.0 if rejected else 2.0, max(0.3, grow))
+            error_old, rejected = error, False
+    return DONE if row == times.size else NO_CONVERGENCE

@@ -1,0 +1,286 @@
+"""The spectral reference simulator: T chapter 2 from a tow and a ship trace to the vehicle's trace."""
+
+import math
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.quantity import InvalidInput, NumericalFailure
+from models.spectral.basis import Fields, default_stations, prepare
+from models.spectral.explicit import march_explicit
+from models.spectral.implicit import BUDGET, DONE, NOT_FINITE, SLACK, march
+from models.spectral.winch import Winch, control_arrays
+from models.statics import SlackCable, StaticShape, static_shape
+from models.tow import Tow
+from models.trace import Trace
+from models.vehicle import Towfish
+
+Floats = NDArray[np.float64]
+Stepper = Literal["implicit", "newmark", "runge-kutta"]
+STEPPERS: tuple[Stepper, ...] = ("implicit", "newmark", "runge-kutta")
+Start = Literal["rest", "steady"]
+
+#: Most steps of a run, accepted and rejected.
+STEP_BUDGET = 5_000_000
+#: Local error per step that a wanted error of the whole record allows, measured on the built-in configurations.
+_LOCAL_SHARE = 0.2
+#: Harmonics and tolerance of the companion run, and how much smaller the error of the finer run is at least.
+_COMPANION_HARMONICS, _COMPANION_TOLERANCE, _COMPANION_RATIO = 0.6, 4.0, 0.3
+_REFINEMENTS = 5
+_MOST_HARMONICS = 160
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SpectralResult:
+    """A spectral run.
+
+    `vehicle` is absolute, with its velocity and the tensions at the top and at the vehicle. `amplitudes` (n, 2 + N)
+    [m] are (p_b, eta_1, Q_1 ... Q_N) at the samples, counted from `shape`. `error` [m/s] is the estimated RMS error
+    of the vehicle's velocity against a finer run, None where the resolution was given.
+    """
+
+    vehicle: Trace
+    amplitudes: Floats
+    shape: StaticShape
+    tow: Tow
+    ship: Trace
+    pitch: Floats | None
+    payout: Floats | None
+    harmonics: int
+    stations: int
+    steps: int
+    rejected: int
+    evaluations: int
+    error: float | None
+
+    def cable_at(self, sample: int, points: int = 61) -> tuple[Floats, Floats]:
+        """x and z [m] of the cable at a sample, vehicle first, (points,) each."""
+        x = np.linspace(0.0, 1.0, points)
+        shape, y = self.shape, self.amplitudes[sample]
+        s = x * self.tow.cable.length
+        phi = np.interp(s, shape.s, shape.phi)
+        elapsed = self.ship.t[sample] - self.ship.t[0]
+        moved = self.ship.position[sample] - self.ship.position[0]
+        dx, dz = moved[0] - self.tow.speed * elapsed, moved[2]
+        top = float(shape.phi[-1])
+        eta_2 = -math.sin(top) * dx + math.cos(top) * dz
+        p_top = math.cos(top) * dx + math.sin(top) * dz
+        if self.payout is not None:
+            p_top -= float(self.payout[sample])
+        n = np.arange(1, self.harmonics + 1)
+        q = y[1] * (1.0 - x) + eta_2 * x + np.sin(math.pi * x[:, None] * n) @ y[2:]
+        p = y[0] * (1.0 - x) + p_top * x
+        X = np.interp(s, shape.s, shape.x) + p * np.cos(phi) - q * np.sin(phi)
+        Z = np.interp(s, shape.s, shape.z) + p * np.sin(phi) + q * np.cos(phi)
+        start = self.ship.position[0]
+        return X + start[0] + self.tow.speed * elapsed, Z + start[2]
+
+
+def simulate(
+    tow: Tow,
+    ship: Trace,
+    *,
+    tolerance: float = 1e-4,
+    harmonics: int | None = None,
+    stations: int | None = None,
+    step: float | None = None,
+    stepper: Stepper = "implicit",
+    start: Start = "rest",
+    winch: Winch | None = None,
+    drag_angle: str = "moved",
+    end_condition: str = "weak",
+    allow_aliasing: bool = False,
+) -> SpectralResult:
+    """Simulate the planar motion of a cable and its vehicle under a ship's motion.
+
+    Parameters
+    ----------
+    ship
+        Trace of the tow point along x and z; y must not change. Results come at its times.
+    tolerance
+        Wanted RMS error of the vehicle's velocity over the record [m/s]. It chooses the harmonics and the steps
+        where they are not given, and is checked against a coarser companion run.
+    harmonics, stations, step
+        Resolution, where it shall be given: sines, Gauss stations, and the step [s] of Newmark's method.
+    start
+        ``rest``: steady in the frame that moves at `tow.speed`; ``steady``: the static shape at the ship's mean
+        velocity over the first minute.
+
+    Raises
+    ------
+    InvalidInput
+        An unknown option, a track out of the plane, missing ship samples, or a resolution that aliases.
+    SlackCable
+        The tension falls to zero: the small deflections about one shape no longer describe the cable.
+    NumericalFailure
+        The steps do not converge, the step budget runs out, or the error stays above the tolerance.
+    """
+    _check(ship, tolerance, stepper, start, step)
+    if start == "steady":
+        tow = replace(tow, speed=initial_speed(ship))
+    shape = static_shape(tow)
+    options = {"drag_angle": drag_angle, "end_condition": end_condition, "allow_aliasing": allow_aliasing}
+
+    def run(sines: int, local: float, newmark_step: float) -> SpectralResult:
+        fields = prepare(tow, harmonics=sines, stations=stations, shape=shape, **options)  # type: ignore[arg-type]
+        return _march(tow, ship, shape, fields, stepper, local, newmark_step, winch)
+
+    local = _LOCAL_SHARE * tolerance
+    longest = float(np.diff(ship.t).max())
+    newmark_step = step if step is not None else min(longest, 40.0 * math.sqrt(tolerance))
+    if harmonics is not None and (stepper != "newmark" or step is not None):
+        return run(harmonics, local, newmark_step)
+    sines = harmonics if harmonics is not None else first_harmonics(tow, ship, shape, tolerance)
+    fewer = sines if harmonics is not None else max(3, round(_COMPANION_HARMONICS * sines))
+    coarse = run(fewer, _COMPANION_TOLERANCE * local, newmark_step if step is not None else 2.0 * newmark_step)
+    for _ in range(_REFINEMENTS):
+        fine = run(sines, local, newmark_step)
+        assert fine.vehicle.velocity is not None
+        assert coarse.vehicle.velocity is not None
+        difference = fine.vehicle.velocity - coarse.vehicle.velocity
+        error = _COMPANION_RATIO * float(np.sqrt(np.mean(np.sum(difference**2, axis=1))))
+        if error <= tolerance:
+            return replace(fine, error=error)
+        coarse = fine
+        local /= _COMPANION_TOLERANCE
+        if step is None:
+            newmark_step *= 0.5
+        if harmonics is None:
+            sines = min(_MOST_HARMONICS, math.ceil(sines / _COMPANION_HARMONICS))
+    raise NumericalFailure(
+        f"The spectral simulator's estimated error in the vehicle's velocity is still {error:.3g} m/s RMS over the "
+        f"record of {ship.t[-1] - ship.t[0]:g} s with {sines} harmonics, above the tolerance of {tolerance:g} m/s; "
+        "smooth the ship's record, or allow a larger tolerance."
+    )
+
+
+def initial_speed(ship: Trace, window: float = 60.0) -> float:
+    """Mean velocity of the ship along x over its first minute [m/s]."""
+    until = min(float(ship.t[0]) + window, float(ship.t[-1]))
+    place = ship.at([float(ship.t[0]), until])[:, 0]
+    return float((place[1] - place[0]) / (until - ship.t[0]))
+
+
+def first_harmonics(tow: Tow, ship: Trace, shape: StaticShape, tolerance: float) -> int:
+    """Sines for a first run: the lateral motion diffuses down the cable over sqrt(T/(omega b)), b = 2 k_n V.
+
+    The count is affine in the cable's length over that depth, with constants measured on the built-in
+    configurations, and follows the tolerance by the measured order 3.3 of the weak form.
+    """
+    rates = ship.spline(ship.t, 1)[:, 0] - tow.speed
+    speed = float(np.sqrt(np.mean(rates**2))) + 1e-3
+    change = float(np.sqrt(np.mean(ship.spline(ship.t, 2)[:, 0] ** 2)))
+    omega = min(max(change / speed, 0.02), 0.5)
+    drag = 2.0 * tow.cable.normal_drag(tow.water_density) * (speed + abs(tow.speed))
+    tension = float(shape.tension_at(0.5 * tow.cable.length))
+    waves = tow.cable.length / math.pi * math.sqrt(omega * drag / tension)
+    return min(_MOST_HARMONICS, max(4, math.ceil((5.0 + 3.9 * waves) * (1e-4 / tolerance) ** 0.3)))
+
+
+def _check(ship: Trace, tolerance: float, stepper: str, start: str, step: float | None) -> None:
+    if stepper not in STEPPERS:
+        raise InvalidInput(f"The stepper must be one of {', '.join(STEPPERS)}, but {stepper!r} was given.")
+    if start not in ("rest", "steady"):
+        raise InvalidInput(f"The start must be rest or steady, but {start!r} was given.")
+    if not (tolerance > 0.0 and math.isfinite(tolerance)):
+        raise InvalidInput(f"The tolerance must be above 0 m/s, but {tolerance:g} m/s was given.")
+    if step is not None and not (step > 0.0 and math.isfinite(step)):
+        raise InvalidInput(f"The step must be above 0 s, but {step:g} s was given.")
+    if not ship.valid.all():
+        i = int(np.argmin(ship.valid))
+        raise InvalidInput(f"The ship's trace must be complete, but its sample {i} at t = {ship.t[i]:g} s is missing.")
+    off = float(np.ptp(ship.position[:, 1]))
+    if off > 1e-6:
+        raise InvalidInput(
+            f"The spectral simulator is planar, but the ship leaves the plane by {off:.3g} m across its track; "
+            "project the track on one direction, or use the three-dimensional simulator."
+        )
+
+
+def _march(
+    tow: Tow,
+    ship: Trace,
+    shape: StaticShape,
+    fields: Fields,
+    stepper: Stepper,
+    local: float,
+    newmark_step: float,
+    winch: Winch | None,
+) -> SpectralResult:
+    N, J = fields.sines.shape[1:]
+    nb = 3 if isinstance(tow.vehicle, Towfish) else 2
+    spline = ship.spline
+    knots = np.ascontiguousarray(spline.x)
+    # In the steadily towed frame, from the first position: large map coordinates cost no digits.
+    coefficients = np.array(spline.c[:, :, [0, 2]])
+    if coefficients.shape[0] < 4:
+        coefficients = np.concatenate([np.zeros((4 - coefficients.shape[0], *coefficients.shape[1:])), coefficients])
+    coefficients[3] -= np.array([ship.position[0, 0], ship.position[0, 2]])
+    coefficients[3, :, 0] -= tow.speed * (knots[:-1] - knots[0])
+    coefficients[2, :, 0] -= tow.speed
+    control, payout_t, payout_l = control_arrays(winch, tow.cable.length)
+    out, shapes = np.zeros((len(ship), 2 * nb + 3)), np.zeros((len(ship), 2 + N))
+    counts, where = np.zeros(4, dtype=np.int64), np.zeros(2)
+    first = min(1.0, float(np.diff(ship.t).min()))
+    rest = (control, payout_t, payout_l, shape.depth, out, shapes, counts, where)
+    if stepper == "runge-kutta":
+        status = march_explicit(fields, knots, coefficients, ship.t, first, local, STEP_BUDGET, *rest)
+    elif stepper == "newmark":
+        status = march(fields, knots, coefficients, ship.t, 1, newmark_step, 1e-2 * local, STEP_BUDGET, *rest)
+    else:
+        status = march(fields, knots, coefficients, ship.t, 0, first, local, STEP_BUDGET, *rest)
+    if status != DONE:
+        _fail(status, where, counts, tow)
+    elapsed = ship.t - ship.t[0]
+    position, velocity = np.zeros((len(ship), 3)), np.zeros((len(ship), 3))
+    end_x, end_z = float(shape.x[0]), float(shape.z[0])
+    if isinstance(tow.vehicle, Towfish):
+        s, c = math.sin(shape.pitch), math.cos(shape.pitch)
+        end_x -= tow.vehicle.tow_point_p * c - tow.vehicle.tow_point_q * s
+        end_z -= tow.vehicle.tow_point_p * s + tow.vehicle.tow_point_q * c
+    position[:, 0] = ship.position[0, 0] + tow.speed * elapsed + end_x + out[:, 0]
+    position[:, 1] = ship.position[0, 1]
+    position[:, 2] = ship.position[0, 2] + end_z + out[:, 1]
+    velocity[:, 0], velocity[:, 2] = tow.speed + out[:, nb], out[:, nb + 1]
+    return SpectralResult(
+        vehicle=Trace(t=ship.t, position=position, velocity=velocity, tension=out[:, 2 * nb : 2 * nb + 2]),
+        amplitudes=shapes,
+        shape=shape,
+        tow=tow,
+        ship=ship,
+        pitch=out[:, 2].copy() if nb == 3 else None,
+        payout=out[:, 2 * nb + 2].copy() if winch is not None else None,
+        harmonics=N,
+        stations=J,
+        steps=int(counts[2]),
+        rejected=int(counts[3]),
+        evaluations=int(counts[0]),
+        error=None,
+    )
+
+
+def _fail(status: int, where: Floats, counts: NDArray[np.int64], tow: Tow) -> None:
+    time, spot = float(where[0]), float(where[1])
+    if status == SLACK:
+        raise SlackCable(
+            f"The cable goes slack at t = {time:.2f} s, s = {spot:.1f} m of {tow.cable.length:g} m from the vehicle: its "
+            "tension falls to zero, where the sine series about one shape no longer holds."
+        )
+    if status == NOT_FINITE:
+        raise NumericalFailure(
+            f"The spectral simulator left the finite range at t = {time:.2f} s, s = {spot:.1f} m (tension)."
+        )
+    if status == BUDGET:
+        raise NumericalFailure(
+            f"The spectral simulator used its budget of {STEP_BUDGET} steps by t = {time:.2f} s "
+            f"({int(counts[3])} rejected); allow a larger tolerance or a shorter record."
+        )
+    raise NumericalFailure(
+        f"The spectral simulator's step does not converge at t = {time:.2f} s (vehicle velocity); a smaller step, a "
+        "smoother ship record or the implicit stepper may help."
+    )
+
+
+__all__ = ["STEPPERS", "SpectralResult", "default_stations", "first_harmonics", "initial_speed", "simulate"]
