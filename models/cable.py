@@ -14,7 +14,8 @@ class Cable:
     """A uniform cable. Lengths are unstretched; drag areas are per unstretched length.
 
     `tangential_area` states the reference of the tangential drag coefficient: ``diameter`` as
-    T and H print it (1/2 rho d C_t u|u|), ``circumference`` for pi d.
+    T and H print it (1/2 rho d C_t u|u|), ``circumference`` for pi d. `axial_damping` is the time tau_a of the
+    material's internal loss, T = EA (e + tau_a e'): a share omega tau_a/2 of critical at omega.
     """
 
     length: Annotated[float, positive("L", "m")]
@@ -27,6 +28,7 @@ class Cable:
     normal_drag_coefficient: Annotated[float, non_negative("C_n", "-")]
     tangential_drag_coefficient: Annotated[float, non_negative("C_t", "-")]
     tangential_area: TangentialArea = "diameter"
+    axial_damping: Annotated[float, Quantity("tau_a", "s", lower=0.0, upper=1.0)] = 0.0
 
     def __post_init__(self) -> None:
         check_quantities(self)
@@ -45,8 +47,9 @@ class Cable:
         tangential_drag_coefficient: float,
         poisson_ratio: float = 0.5,
         tangential_area: TangentialArea = "diameter",
+        axial_damping: float = 0.0,
     ) -> Self:
-        """Mass, weight and stiffness from density [kg/m3] and Young's modulus [Pa]: m = rho_c A, w = (rho_c - rho) A g."""
+        """Mass, weight and stiffness from density [kg/m3] and modulus [Pa]: m = rho_c A, w = (rho_c - rho) A g."""
         area = 0.25 * math.pi * diameter**2
         return cls(
             length=length,
@@ -59,6 +62,7 @@ class Cable:
             normal_drag_coefficient=normal_drag_coefficient,
             tangential_drag_coefficient=tangential_drag_coefficient,
             tangential_area=tangential_area,
+            axial_damping=axial_damping,
         )
 
     @property

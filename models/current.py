@@ -21,14 +21,16 @@ class Current:
         speed = np.array(self.speed, dtype=float)
         if depth.ndim != 1 or depth.shape != speed.shape or depth.size == 0:
             raise InvalidInput(
-                f"Current needs one speed [m/s] for each depth [m], but got {depth.size} depths and {speed.size} speeds."
+                f"Current needs one speed [m/s] for each depth [m], but got {depth.size} depths and "
+                f"{speed.size} speeds."
             )
         if not (np.isfinite(depth).all() and np.isfinite(speed).all()):
             raise InvalidInput("Current needs finite depths and speeds, but one of them is not a number.")
         if np.any(np.diff(depth) <= 0.0):
             i = int(np.argmax(np.diff(depth) <= 0.0))
             raise InvalidInput(
-                f"Current needs increasing depths, but depth[{i}] = {depth[i]:g} m and depth[{i + 1}] = {depth[i + 1]:g} m."
+                f"Current needs increasing depths, but depth[{i}] = {depth[i]:g} m and "
+                f"depth[{i + 1}] = {depth[i + 1]:g} m."
             )
         depth.setflags(write=False)
         speed.setflags(write=False)
@@ -47,4 +49,5 @@ class Current:
 
     def at(self, depth: ArrayLike) -> NDArray[np.float64]:
         """Speed [m/s] at the given depths [m, positive down], shape kept."""
-        return np.interp(np.asarray(depth, dtype=float), self.depth, self.speed)
+        speed: NDArray[np.float64] = np.interp(np.asarray(depth, dtype=float), self.depth, self.speed)
+        return speed

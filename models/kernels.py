@@ -9,7 +9,7 @@ import hashlib
 import os
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numba
 
@@ -27,15 +27,17 @@ def _cache_folder() -> Path:
 
 
 if "NUMBA_CACHE_DIR" not in os.environ:
-    numba.config.CACHE_DIR = str(_cache_folder())
+    setattr(numba.config, "CACHE_DIR", str(_cache_folder()))  # noqa: B010 (numba makes its settings at run time)
 
 
 def kernel(function: _F) -> _F:
     """Compile at first use, keep the machine code, release the interpreter lock, divide as IEEE does."""
-    return numba.njit(cache=True, nogil=True, error_model="numpy")(function)
+    compiled: Any = numba.njit(cache=True, nogil=True, error_model="numpy")(function)
+    return cast(_F, compiled)
 
 
 def fast_kernel(function: _F) -> _F:
     """`kernel` that may reorder sums, for loops over stations and sines; infinities and NaN stay exact."""
     flags = {"contract", "reassoc", "nsz"}
-    return numba.njit(cache=True, nogil=True, error_model="numpy", fastmath=flags)(function)
+    compiled: Any = numba.njit(cache=True, nogil=True, error_model="numpy", fastmath=flags)(function)
+    return cast(_F, compiled)

@@ -16,7 +16,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from models.quantity import GRAVITY, InvalidInput, NumericalFailure
 from models.tow import Tow
@@ -50,9 +50,10 @@ class StaticShape:
     flow: Floats
     pitch: float = 0.0
 
-    def tension_at(self, s: float | Floats) -> Floats:
+    def tension_at(self, s: ArrayLike) -> Floats:
         """Effective tension [N] at the unstretched lengths s [m] from the vehicle."""
-        return np.interp(np.asarray(s, dtype=float), self.s, self.T)
+        tension: Floats = np.interp(np.asarray(s, dtype=float), self.s, self.T)
+        return tension
 
     @property
     def depth(self) -> float:
@@ -119,10 +120,10 @@ def midpoint_travel_time(tow: Tow, shape: StaticShape) -> float:
     return tow.cable.length * math.sqrt(tow.cable.mass / middle)
 
 
-def flow_at(tow: Tow, z: float | Floats) -> Floats:
+def flow_at(tow: Tow, z: ArrayLike) -> Floats:
     """The water's speed relative to the steadily towed frame at height z (negative below the surface) [m/s]."""
-    z = np.asarray(z, dtype=float)
-    ambient = tow.current.at(-z) if tow.current is not None else np.zeros(z.shape)
+    height = np.asarray(z, dtype=float)
+    ambient = tow.current.at(-height) if tow.current is not None else np.zeros(height.shape)
     return ambient - tow.speed
 
 
@@ -172,9 +173,7 @@ def _pitch_equilibrium(body: Towfish, density: float, flow: float) -> float:
             f"The towfish has no stable pitch angle between -90 and 90 degrees in a flow of {flow:g} m/s; the moment "
             f"runs from {moment.max():.3g} to {moment.min():.3g} N m. Move its tow point or its buoyancy centre up."
         )
-    roots = [
-        brentq(lambda a: _pitch_moment(body, density, flow, a), grid[i], grid[i + 1], xtol=1e-14) for i in falls
-    ]
+    roots = [brentq(lambda a: _pitch_moment(body, density, flow, a), grid[i], grid[i + 1], xtol=1e-14) for i in falls]
     return float(min(roots, key=abs))
 
 

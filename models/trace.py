@@ -83,7 +83,8 @@ class Trace:
     @property
     def valid(self) -> NDArray[np.bool_]:
         """(n,) whether the sample holds a fix."""
-        return np.isfinite(self.position).all(axis=1)
+        seen: NDArray[np.bool_] = np.logical_and.reduce(np.isfinite(self.position), axis=1)
+        return seen
 
     @cached_property
     def spline(self) -> "CubicSpline":

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from models.quantity import InvalidInput
-from models.statics import StaticShape, static_shape
+from models.statics import StaticShape, flow_at, static_shape
 from models.tow import Tow
 from models.vehicle import Vehicle
 
@@ -47,7 +47,9 @@ END_CONDITIONS = ("weak", "pointwise")
     CURVED,  # 1 where the static shape is not a vertical line
     WEAK,  # 1 for the weak end condition, 0 for the printed pointwise one
     TENSION_TOP,  # static tension at the tow point [N]
-) = range(19)
+    SHEAR_0,  # du/dz at the vehicle [1/s]
+    AXIAL_LOSS,  # tau_a, time of the cable's internal loss [s]
+) = range(21)
 #: Names of the station rows in `Fields.station`.
 (
     X,  # s/L
@@ -61,13 +63,14 @@ END_CONDITIONS = ("weak", "pointwise")
     STATIC_NORMAL,  # f_n0 [N/m]
     STATIC_TANGENTIAL,  # f_t0 [N/m]
     STRETCH,  # 1/(1 + e)
-) = range(11)
+    SHEAR,  # du/dz [1/s]
+) = range(12)
 
 
 class Fields(NamedTuple):
     """What the kernels read, in few arrays: J stations, N harmonics, SI units.
 
-    `scalar` (19,) and `station` (11, J) are named above. `sines` (2, N, J) = sin(n pi x) and its derivative in s,
+    `scalar` (21,) and `station` (12, J) are named above. `sines` (2, N, J) = sin(n pi x) and its derivative in s,
     `sines_t` (2, J, N) the same by station; `moments` (2, J, 2N + 1) = cos, sin(k pi x); `axial` (2, K, J): the
     integral of g from the vehicle to station j is sum_k axial[1, k, j] c_k with c = axial[0] @ g, and c_0 is the
     integral over the whole cable. `body` are the parameters of `body_array`.
@@ -143,14 +146,15 @@ def prepare(
     if drag_angle not in DRAG_ANGLES:
         raise InvalidInput(f"drag_angle must be one of {', '.join(DRAG_ANGLES)}, but {drag_angle!r} was given.")
     if end_condition not in END_CONDITIONS:
-        raise InvalidInput(f"end_condition must be one of {', '.join(END_CONDITIONS)}, but {end_condition!r} was given.")
+        known = ", ".join(END_CONDITIONS)
+        raise InvalidInput(f"end_condition must be one of {known}, but {end_condition!r} was given.")
     if harmonics < 1:
         raise InvalidInput(f"The sine series needs at least 1 harmonic, but {harmonics} was given.")
     J = default_stations(harmonics) if stations is None else stations
-    if J < smallest_stations(harmonics) and not allow_aliasing:
+    if smallest_stations(harmonics) > J and not allow_aliasing:
         raise InvalidInput(
-            f"{harmonics} harmonics need at least {smallest_stations(harmonics)} stations along the cable, but {J} were "
-            "given: fewer project the drag wrongly (aliasing). Raise the stations or lower the harmonics."
+            f"{harmonics} harmonics need at least {smallest_stations(harmonics)} stations along the cable, but {J} "
+            "were given: fewer project the drag wrongly (aliasing). Raise the stations or lower the harmonics."
         )
     shape = static_shape(tow) if shape is None else shape
     cable = tow.cable
@@ -176,26 +180,31 @@ def prepare(
     integral[:, 0] = x
     integral[:, 1:] = 0.5 * (V[:, 2 : K + 1] - V[:, : K - 1]) / (2.0 * degree[1:] + 1.0)
     bottom, upper = (0.5 * math.pi, 0.5 * math.pi) if vertical else (float(shape.phi[0]), float(shape.phi[-1]))
-    scalar = np.zeros(19)
+    scalar = np.zeros(21)
     scalar[LENGTH], scalar[AXIAL_STIFFNESS] = L, cable.axial_stiffness
     scalar[WEIGHT], scalar[LATERAL_MASS] = cable.weight_in_water, cable.mass + cable.added_mass
     scalar[TANGENTIAL_DRAG] = k_t
     scalar[TANGENT_X], scalar[TANGENT_Z] = 0.0 if vertical else math.cos(bottom), math.sin(bottom)
     scalar[TOP_X], scalar[TOP_Z] = 0.0 if vertical else math.cos(upper), math.sin(upper)
     scalar[TENSION_0], scalar[FLOW_0] = shape.T[0], shape.flow[0]
+    scalar[AXIAL_LOSS] = cable.axial_damping
     scalar[TENSION_TOP] = shape.T[-1]
     scalar[BEND_0] = 0.0 if vertical else _end_slope(shape)
     scalar[STRETCH_0] = 1.0 / (1.0 + shape.strain[0])
     scalar[PITCH] = shape.pitch
     scalar[MOVED], scalar[FLOWING] = drag_angle == "moved", flowing
     scalar[CURVED], scalar[WEAK] = not vertical, end_condition == "weak"
-    station = np.zeros((11, J))
+    station = np.zeros((12, J))
     station[X], station[QUADRATURE], station[STATIC_TENSION] = x, 0.5 * L * weight, T_s
     if not vertical:
         station[BEND] = (cable.weight_in_water * cosine + k_n * u_n * np.abs(u_n)) / T_s
     station[SINE], station[COSINE], station[FLOW] = np.ones(J) if vertical else np.sin(phi), cosine, flow
     station[NORMAL_DRAG], station[STATIC_NORMAL] = k_n, -k_n * u_n * np.abs(u_n)
     station[STATIC_TANGENTIAL], station[STRETCH] = k_t * u_t * np.abs(u_t), 1.0 / (1.0 + e)
+    if drag_angle == "moved":
+        # The drag that sees the moved angle sees the moved depth as well.
+        scalar[SHEAR_0] = _shear(tow, shape.z[:1])[0]
+        station[SHEAR] = _shear(tow, np.interp(x * L, shape.s, shape.z))
     sines = np.array([np.sin(n * math.pi * x), n * math.pi / L * np.cos(n * math.pi * x)])
     return Fields(
         scalar=scalar,
@@ -206,6 +215,12 @@ def prepare(
         axial=np.array([A, integral.T]),
         body=body_array(tow),
     )
+
+
+def _shear(tow: Tow, z: Floats) -> Floats:
+    """du/dz of the flow at heights z [1/s], over a thousandth of the cable."""
+    reach = 5e-4 * tow.cable.length
+    return (flow_at(tow, z + reach) - flow_at(tow, z - reach)) / (2.0 * reach)
 
 
 def _end_slope(shape: StaticShape) -> float:

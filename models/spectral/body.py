@@ -9,11 +9,10 @@ added mass, as H has it: d/dt of the body-axis momentum is the force.
 import math
 
 import numpy as np
-
 from numpy.typing import NDArray
 
 from models.kernels import kernel
-from models.spectral.basis import FLOW_0, PITCH, TANGENT_X, TANGENT_Z, Fields
+from models.spectral.basis import FLOW_0, PITCH, SHEAR_0, TANGENT_X, TANGENT_Z, Fields
 
 Floats = NDArray[np.float64]
 
@@ -43,7 +42,7 @@ def end_motion(f: Fields, b: Floats, w: Floats, y: Floats, v: Floats, lever: Flo
 @kernel
 def body_balance(f: Fields, b: Floats, w: Floats, momentum: Floats, F: Floats) -> None:
     """Fill the body's own momentum and the forces on it other than the cable's."""
-    flow = f.scalar[FLOW_0]
+    flow = f.scalar[FLOW_0] + f.scalar[SHEAR_0] * b[1]
     if b.size == 2:
         m, k, W = f.body[0], f.body[1], f.body[2]
         u, v = w[0] - flow, w[1]

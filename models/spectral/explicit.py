@@ -23,8 +23,8 @@ from models.spectral.implicit import (
     ship_at,
     stage_matrix,
     substitute,
-    winch_rate,
 )
+from models.spectral.winch import pay_out, steer
 
 Floats = NDArray[np.float64]
 
@@ -39,9 +39,8 @@ def march_explicit(
     tolerance: float,
     budget: int,
     control: Floats,
-    payout_t: Floats,
-    payout_l: Floats,
-    depth_0: float,
+    winch_t: Floats,
+    winch_value: Floats,
     out: Floats,
     shapes: Floats,
     counts: NDArray[np.int64],
@@ -57,15 +56,16 @@ def march_explicit(
     w, pi, F, error_w = np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n)
     cable, station = np.zeros((7, 2 + N)), np.zeros((WORK_ROWS, J))
     A, Y, pivot = np.zeros((n, n)), np.zeros((2 + N, 2 + N)), np.zeros(n, dtype=np.int64)
-    end, memory = np.zeros(7), np.zeros(2)
+    end, memory = np.zeros(7), np.zeros(5)
     winch, control_time, t, place = control[0] > 0.0, times[0], times[0], 0
     if nb == 3:
         state[2] = f.scalar[PITCH]
     factored = False
-    row, l_0 = 0, 0.0
+    row = 0
     while True:
         # Slope at the state reached: velocity, force and tensions there.
-        end[4] = l_0
+        if winch:
+            pay_out(control, memory, t, end)
         place = ship_at(f, t, knots, ship, place, end)
         for i in range(2 * n):
             trial[i] = state[i]
@@ -97,7 +97,7 @@ def march_explicit(
                 if abs(t - times[row]) <= 1e-9 * max(1.0, abs(t)):
                     for i in range(nb):
                         out[row, i], out[row, nb + i] = state[i], w[i]
-                    out[row, 2 * nb], out[row, 2 * nb + 1], out[row, 2 * nb + 2] = end[6], cable[3, 0], l_0
+                    out[row, 2 * nb], out[row, 2 * nb + 1], out[row, 2 * nb + 2] = end[6], cable[3, 0], end[4]
                     for i in range(2 + N):
                         shapes[row, i] = cable[0, i]
                     row += 1
@@ -106,10 +106,7 @@ def march_explicit(
                 if counts[2] + counts[3] >= budget:
                     return BUDGET
                 if winch and t >= control_time - 1e-9:
-                    rate = winch_rate(control, payout_t, payout_l, t, depth_0 - state[1], memory)
-                    target = min(max(l_0 + rate * control[1], control[6]), control[7])
-                    end[5] = (target - l_0) / control[1]
-                    memory[0] = target
+                    steer(control, winch_t, winch_value, t, -state[1], memory)
                     control_time += control[1]
                 limit = min(times[row], control_time) if winch else times[row]
                 step = limit - t if h >= 0.999 * (limit - t) else h
@@ -151,7 +148,8 @@ def march_explicit(
                 target_t = t_0 + advance
                 for i in range(2 * n):
                     trial[i] = (halves[i] if phase > 6 else state[i]) + advance * slope[i]
-            end[4] = l_0 + (target_t - t) * end[5]
+            if winch:
+                pay_out(control, memory, target_t, end)
             place = ship_at(f, target_t, knots, ship, place, end)
         error = 0.0
         for i in range(n):
@@ -169,7 +167,6 @@ def march_explicit(
         for i in range(2 * n):
             state[i] = halves[i] + (halves[i] - whole[i]) / 15.0
         t += step
-        l_0 += step * end[5]
         counts[2] += 1
         h = step * min(4.0, 0.9 * max(error, 1e-4) ** -0.2)
         if abs(t - times[row]) <= 1e-9 * max(1.0, abs(t)):

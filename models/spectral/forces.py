@@ -6,10 +6,12 @@ the static frame there, and the sine amplitudes [m]. With v any of the shapes (1
     int v (m + m_a) q_tt ds + int v' T phi_d ds = int v (T_d phi_s' + f_n - f_n0 + f_t phi_d) ds + [end force],
 
 where T = T_s + T_d, phi_d (1 + e) = q_s + p phi_s', f_n = -k_n v_r |v_r| with the one signed relative velocity
-v_r = q_t + u sin(phi_s + phi_d), and f_t = -k_t u_r |u_r| with u_r = p_t - u cos(phi_s + phi_d). The gravity term
-w sin(phi_s) phi_d of the strong form sits in T' of the weak one. The dynamic tension is
+v_r = q_t + u sin(phi_s + phi_d), and f_t = -k_t u_r |u_r| with u_r = p_t - u cos(phi_s + phi_d); a sheared flow u
+is taken at the moved depth. The gravity term w sin(phi_s) phi_d of the strong form sits in T' of the weak one. The
+dynamic tension is
 
-    T_d = EA/L [p_top - p_b - int q phi_s' ds + 1/2 int phi_d^2 ds] + G(s),   G' = w cos(phi_s) phi_d - f_t + f_t0,
+    T_d = EA/L [(1 + tau_a d/dt)(p_top - p_b - int q phi_s' ds) + 1/2 int phi_d^2 ds] + G(s),
+    G' = w cos(phi_s) phi_d - f_t + f_t0,
 
 G of zero mean, which carries T (2.33) with the tangential drag. A winch pays out l: p_top - l, L + l, and the
 material's own motion (p_t + x l') phi_d in the normal velocity.
@@ -18,11 +20,11 @@ material's own motion (p_t + x l') phi_d in the normal velocity.
 import math
 
 import numpy as np
-
 from numpy.typing import NDArray
 
 from models.kernels import fast_kernel
 from models.spectral.basis import (
+    AXIAL_LOSS,
     AXIAL_STIFFNESS,
     BEND,
     BEND_0,
@@ -35,6 +37,7 @@ from models.spectral.basis import (
     MOVED,
     NORMAL_DRAG,
     QUADRATURE,
+    SHEAR,
     SINE,
     STATIC_NORMAL,
     STATIC_TANGENTIAL,
@@ -46,15 +49,15 @@ from models.spectral.basis import (
     TENSION_TOP,
     WEAK,
     WEIGHT,
-    X,
     Fields,
+    X,
 )
 
 Floats = NDArray[np.float64]
 
 #: Rows of the station workspace.
-PHI, TENSION, SLOPE, CHI, WORK, RATE, NORMAL, ALONG = range(8)
-WORK_ROWS = 8
+PHI, TENSION, SLOPE, CHI, WORK, RATE, NORMAL, ALONG, WATER = range(9)
+WORK_ROWS = 9
 
 
 @fast_kernel
@@ -68,17 +71,18 @@ def cable_forces(f: Fields, y: Floats, v: Floats, end: Floats, F: Floats, statio
     N, J = S.shape
     p, field = f.scalar, f.station
     x, c, stretch_s, bend_s = field[X], field[QUADRATURE], field[STRETCH], field[BEND]
-    sin_s, cos_s, flow = field[SINE], field[COSINE], field[FLOW]
+    sin_s, cos_s, flow, shear = field[SINE], field[COSINE], field[FLOW], field[SHEAR]
     T_s, k_n = field[STATIC_TENSION], field[NORMAL_DRAG]
     L, EA, w, k_t = p[LENGTH], p[AXIAL_STIFFNESS], p[WEIGHT], p[TANGENTIAL_DRAG]
     flowing, moved = p[FLOWING] != 0.0, p[MOVED] != 0.0
     lam = 1.0 + end[4] / L
     winch = end[4] != 0.0 or end[5] != 0.0
     phi, T, slope, chi = station[PHI], station[TENSION], station[SLOPE], station[CHI]
-    q, rate, b, along = station[WORK], station[RATE], station[NORMAL], station[ALONG]
+    q, rate, b, along, water = station[WORK], station[RATE], station[NORMAL], station[ALONG], station[WATER]
     slant = (end[2] - y[1]) / (L * lam)
     for j in range(J):
         phi[j] = slant
+        water[j] = flow[j]
         rate[j] = v[1] * (1.0 - x[j]) + end[3] * x[j]
     for n in range(N):
         a, d = y[2 + n] / lam, v[2 + n]
@@ -108,6 +112,7 @@ def cable_forces(f: Fields, y: Floats, v: Floats, end: Floats, F: Floats, statio
             for k in range(K):
                 axial += f.axial[1, k, j] * coefficient[k]
             phi[j] += axial * bend_s[j]
+            water[j] += shear[j] * (axial * sin_s[j] + q[j] * cos_s[j])
         for k in range(K):
             coefficient[k] = 0.0
         for j in range(J):
@@ -121,6 +126,8 @@ def cable_forces(f: Fields, y: Floats, v: Floats, end: Floats, F: Floats, statio
             along[j] += f.axial[1, k, j] * coefficient[k]
         phi[j] *= stretch_s[j]
         stretch += 0.5 * lam * c[j] * phi[j] * phi[j]
+    # The internal loss sees the linear part of the stretch's rate.
+    stretch += p[AXIAL_LOSS] * (end[1] - v[0] - bend)
     mean_tension = EA / (L * lam) * stretch
 
     # Tangential: drag and the turned weight tilt the dynamic tension about its mean.
@@ -131,12 +138,12 @@ def cable_forces(f: Fields, y: Floats, v: Floats, end: Floats, F: Floats, statio
         if flowing and moved:
             sine, cosine = math.sin(phi[j]), math.cos(phi[j])
             turn_s, turn_c = sin_s[j] * cosine + cos_s[j] * sine, cos_s[j] * cosine - sin_s[j] * sine
-        slip = along[j] - flow[j] * turn_c
+        slip = along[j] - water[j] * turn_c
         f_t = -k_t * slip * abs(slip)
         g = (w * cos_s[j] * phi[j] - f_t + field[STATIC_TANGENTIAL, j]) * lam + w * sin_s[j] * (lam - 1.0)
         for k in range(K):
             coefficient[k] += f.axial[0, k, j] * g
-        v_r = rate[j] + flow[j] * turn_s
+        v_r = rate[j] + water[j] * turn_s
         if winch:
             v_r -= (along[j] + x[j] * end[5]) * phi[j]
         weight = c[j] * lam
@@ -144,7 +151,7 @@ def cable_forces(f: Fields, y: Floats, v: Floats, end: Floats, F: Floats, statio
         chi[j] = -weight * f_t
         if flowing:
             if moved:
-                chi[j] += slope[j] * flow[j] * turn_c
+                chi[j] += slope[j] * water[j] * turn_c
             b[j] = weight * (-k_n[j] * v_r * abs(v_r) - field[STATIC_NORMAL, j] + f_t * phi[j])
         else:
             b[j] = weight * (-k_n[j] * v_r * abs(v_r) + f_t * phi[j])
@@ -234,7 +241,7 @@ def cable_matrix(f: Fields, end: Floats, gh: float, station: Floats, grad: Float
                 cross_row[n] += z * bottom * Dt[j, n]
                 cross_col[n] -= z * St[j, n] / L
     scale = p[LATERAL_MASS] * L * lam
-    stiff = gh * gh * EA / (L * lam)
+    stiff = gh * (gh + p[AXIAL_LOSS]) * EA / (L * lam)
     A[0, 0] = stiff
     A[1, 1] = scale / 3.0 + A11 + pull_lin / (L * L) + stiff * grad[1] * grad[1]
     A[0, 1] = A[1, 0] = stiff * grad[0] * grad[1]

@@ -10,13 +10,13 @@ over the whole step, corrected until the velocity settles.
 import math
 
 import numpy as np
-
 from numpy.typing import NDArray
 
 from models.kernels import fast_kernel, kernel
 from models.spectral.basis import LENGTH, PITCH, TANGENT_X, TANGENT_Z, TOP_X, TOP_Z, Fields
 from models.spectral.body import body_balance, couple, end_motion
 from models.spectral.forces import TENSION, WORK_ROWS, cable_forces, cable_matrix, cable_momentum
+from models.spectral.winch import pay_out, steer
 
 Floats = NDArray[np.float64]
 
@@ -27,7 +27,8 @@ _GAMMA = 1.0 - 1.0 / math.sqrt(2.0)
 _W = math.sqrt(2.0) / 4.0
 #: Weights of the embedded error: (b - b_hat) of TR-BDF2.
 _E1, _E2, _E3 = _W - (1.0 - _W) / 3.0, _W - (3.0 * _W + 1.0) / 3.0, _GAMMA - _GAMMA / 3.0
-_NEWTON_ITERATIONS = 8
+_NEWTON_ITERATIONS = 10
+_RENEWAL = 4
 #: Step control: safety, and the weight of the sines' error beside the vehicle's.
 _SAFETY = 0.9
 _WAVE_WEIGHT = 0.1
@@ -81,7 +82,8 @@ def stage_matrix(
     nb = u.size - N
     cable_matrix(f, end, gh, station, cable[4], Y)
     J = np.zeros((2, nb))
-    J[0, 0], J[0, 1], J[1, 0], J[1, 1] = f.scalar[TANGENT_X], f.scalar[TANGENT_Z], -f.scalar[TANGENT_Z], f.scalar[TANGENT_X]
+    J[0, 0], J[0, 1] = f.scalar[TANGENT_X], f.scalar[TANGENT_Z]
+    J[1, 0], J[1, 1] = -f.scalar[TANGENT_Z], f.scalar[TANGENT_X]
     if nb == 3:
         J[0, 2], J[1, 2] = cable[5, 0], cable[5, 1]
     for i in range(nb):
@@ -241,33 +243,10 @@ def solve_stage(
                 for i in range(n):
                     F[i] = (pi[i] - pi_hat[i]) / gh
             return True
-        fresh = iteration > 0 and rate > 0.25
+        # Factors that converge slowly are renewed, and those that need many iterations once.
+        fresh = iteration > 0 and (rate > 0.25 or iteration == _RENEWAL)
         previous = size
     return False
-
-
-@kernel
-def winch_rate(control: Floats, times: Floats, lengths: Floats, t: float, depth: float, memory: Floats) -> float:
-    """Payout rate [m/s] over the coming control period.
-
-    `control` is (mode, period, reference depth, K_p, K_i, rate limit, least, greatest payout); mode 1 follows the
-    table, mode 2 is PI on the depth with anti-windup by holding the integral while the rate is limited.
-    `memory` is (payout, integral).
-    """
-    if control[0] == 1.0:
-        ahead = t + control[1]
-        k = 0
-        while k < times.size - 2 and times[k + 1] < ahead:
-            k += 1
-        share = min(max((ahead - times[k]) / (times[k + 1] - times[k]), 0.0), 1.0)
-        return (lengths[k] + share * (lengths[k + 1] - lengths[k]) - memory[0]) / control[1]
-    error = control[2] - depth
-    wanted = control[3] * error + control[4] * (memory[1] + error * control[1])
-    limit = control[5]
-    if abs(wanted) <= limit:
-        memory[1] += error * control[1]
-        return wanted
-    return limit if wanted > 0.0 else -limit
 
 
 @kernel
@@ -281,9 +260,8 @@ def march(
     tolerance: float,
     budget: int,
     control: Floats,
-    payout_t: Floats,
-    payout_l: Floats,
-    depth_0: float,
+    winch_t: Floats,
+    winch_value: Floats,
     out: Floats,
     shapes: Floats,
     counts: NDArray[np.int64],
@@ -301,12 +279,12 @@ def march(
     n = nb + N
     stages = 3 if stepper == 0 else 2
     u, pi = np.zeros((3, n)), np.zeros((3, n))
-    w, F = np.zeros((3, n)), np.zeros((3, n))
+    w, F, tension = np.zeros((3, n)), np.zeros((3, n)), np.zeros((3, 2))
     u_hat, pi_hat, e = np.zeros(n), np.zeros(n), np.zeros(n)
     w_old, w_mid = np.zeros(n), np.zeros(n)
     cable, station = np.zeros((7, 2 + N)), np.zeros((WORK_ROWS, J))
     A, Y, pivot = np.zeros((n, n)), np.zeros((2 + N, 2 + N)), np.zeros(n, dtype=np.int64)
-    end, memory = np.zeros(7), np.zeros(2)
+    end, memory = np.zeros(7), np.zeros(5)
     t, stop, h_old = times[0], times[-1], h
     winch, control_time = control[0] > 0.0, t
     error_old, rejected = 1.0, False
@@ -323,6 +301,7 @@ def march(
         w_old[i] = w_mid[i] = w[0, i]
     for i in range(nb):
         out[0, i], out[0, nb + i] = u[0, i], w[0, i]
+    tension[0, 0], tension[0, 1] = end[6], cable[3, 0]
     out[0, 2 * nb], out[0, 2 * nb + 1] = end[6], cable[3, 0]
     for i in range(2 + N):
         shapes[0, i] = cable[0, i]
@@ -335,9 +314,7 @@ def march(
         limit = stop
         if winch:
             if t >= control_time - 1e-9:
-                rate = winch_rate(control, payout_t, payout_l, t, depth_0 - u[0, 1], memory)
-                target = min(max(memory[0] + rate * control[1], control[6]), control[7])
-                end[5] = (target - memory[0]) / control[1]
+                steer(control, winch_t, winch_value, t, -u[0, 1], memory)
                 control_time += control[1]
             limit = min(stop, control_time)
         # Land on the limit without a sliver of a last step.
@@ -351,7 +328,8 @@ def march(
         ok = True
         for k in range(1, stages):
             ahead = c * step if stages - k == 2 else step
-            end[4] = memory[0] + ahead * end[5]
+            if winch:
+                pay_out(control, memory, t + ahead, end)
             place = ship_at(f, t + ahead, knots, ship, place, end)
             for i in range(n):
                 if k == 1:
@@ -373,6 +351,7 @@ def march(
             )  # fmt: skip
             if not ok:
                 break
+            tension[k, 0], tension[k, 1] = end[6], cable[3, 0]
         last = stages - 1
         if ok and stepper == 1:
             error = 0.0
@@ -403,25 +382,30 @@ def march(
             return SLACK if math.isfinite(least) else NOT_FINITE
         while row < times.size and times[row] <= t + step + sliver:
             s = min((times[row] - t) / step, 1.0)
-            for i in range(nb):
-                out[row, i] = (
+            # Velocities and tensions: quadratic through the three stages of TR-BDF2, linear over a Newmark step.
+            bow = s * (s - 1.0)
+            at_0, at_1, at_2 = 1.0 - s + bow / c, bow / (c * (c - 1.0)), s + bow / (1.0 - c)
+            if stepper == 1:
+                at_0, at_1, at_2 = 1.0 - s, s, 0.0
+            for i in range(n):
+                position = (
                     (1.0 + 2.0 * s) * (1.0 - s) ** 2 * u[0, i]
                     + s * (1.0 - s) ** 2 * step * w[0, i]
                     + s * s * (3.0 - 2.0 * s) * u[last, i]
                     + s * s * (s - 1.0) * step * w[last, i]
                 )
-                out[row, nb + i] = (1.0 - s) * w[0, i] + s * w[last, i]
-                if stepper == 0:
-                    # The quadratic through the three stage velocities.
-                    out[row, nb + i] += s * (s - 1.0) * (
-                        w[0, i] / c + w[1, i] / (c * (c - 1.0)) + w[2, i] / (1.0 - c)
-                    )
-            out[row, 2 * nb], out[row, 2 * nb + 1] = end[6], cable[3, 0]
-            out[row, 2 * nb + 2] = memory[0] + s * step * end[5]
-            for i in range(2 + N):
-                shapes[row, i] = cable[0, i]
+                if i < nb:
+                    out[row, i], out[row, nb + i] = position, at_0 * w[0, i] + at_1 * w[1, i] + at_2 * w[2, i]
+                else:
+                    shapes[row, 2 + i - nb] = position
+            for i in range(2):
+                out[row, 2 * nb + i] = at_0 * tension[0, i] + at_1 * tension[1, i] + at_2 * tension[2, i]
+            if winch:
+                pay_out(control, memory, times[row], end)
+                out[row, 2 * nb + 2] = end[4]
+            end_motion(f, out[row, :nb], out[row, nb : 2 * nb], shapes[row], cable[1], cable[5, :2], cable[6, :2])
             row += 1
-        memory[0] += step * end[5]
+        tension[0, 0], tension[0, 1] = tension[last, 0], tension[last, 1]
         for i in range(n):
             w_old[i], w_mid[i] = w[0, i], w[1, i]
             u[0, i], w[0, i], pi[0, i], F[0, i] = u[last, i], w[last, i], pi[last, i], F[last, i]

@@ -67,11 +67,11 @@ class SpectralResult:
         top = float(shape.phi[-1])
         eta_2 = -math.sin(top) * dx + math.cos(top) * dz
         p_top = math.cos(top) * dx + math.sin(top) * dz
-        if self.payout is not None:
-            p_top -= float(self.payout[sample])
         n = np.arange(1, self.harmonics + 1)
         q = y[1] * (1.0 - x) + eta_2 * x + np.sin(math.pi * x[:, None] * n) @ y[2:]
-        p = y[0] * (1.0 - x) + p_top * x
+        # The axial deflection is uniform but for the share that the bend takes from the lateral one, p' = q phi_s'.
+        bend = np.concatenate([[0.0], np.cumsum(0.5 * (q[1:] + q[:-1]) * np.diff(phi))])
+        p = y[0] * (1.0 - x) + p_top * x + bend - bend[-1] * x
         X = np.interp(s, shape.s, shape.x) + p * np.cos(phi) - q * np.sin(phi)
         Z = np.interp(s, shape.s, shape.z) + p * np.sin(phi) + q * np.cos(phi)
         start = self.ship.position[0]
@@ -176,7 +176,8 @@ def first_harmonics(tow: Tow, ship: Trace, shape: StaticShape, tolerance: float)
     drag = 2.0 * tow.cable.normal_drag(tow.water_density) * (speed + abs(tow.speed))
     tension = float(shape.tension_at(0.5 * tow.cable.length))
     waves = tow.cable.length / math.pi * math.sqrt(omega * drag / tension)
-    return min(_MOST_HARMONICS, max(4, math.ceil((5.0 + 3.9 * waves) * (1e-4 / tolerance) ** 0.3)))
+    wanted = math.ceil((5.0 + 3.9 * waves) * math.pow(1e-4 / tolerance, 0.3))
+    return min(_MOST_HARMONICS, max(4, wanted))
 
 
 def _check(ship: Trace, tolerance: float, stepper: str, start: str, step: float | None) -> None:
@@ -214,7 +215,7 @@ def _march(
     spline = ship.spline
     knots = np.ascontiguousarray(spline.x)
     # In the steadily towed frame, from the first position: large map coordinates cost no digits.
-    coefficients = np.array(spline.c[:, :, [0, 2]])
+    coefficients = np.array(spline.c[:, :, [0, 2]], order="C")
     if coefficients.shape[0] < 4:
         coefficients = np.concatenate([np.zeros((4 - coefficients.shape[0], *coefficients.shape[1:])), coefficients])
     coefficients[3] -= np.array([ship.position[0, 0], ship.position[0, 2]])
@@ -224,7 +225,7 @@ def _march(
     out, shapes = np.zeros((len(ship), 2 * nb + 3)), np.zeros((len(ship), 2 + N))
     counts, where = np.zeros(4, dtype=np.int64), np.zeros(2)
     first = min(1.0, float(np.diff(ship.t).min()))
-    rest = (control, payout_t, payout_l, shape.depth, out, shapes, counts, where)
+    rest = (control, payout_t, payout_l, out, shapes, counts, where)
     if stepper == "runge-kutta":
         status = march_explicit(fields, knots, coefficients, ship.t, first, local, STEP_BUDGET, *rest)
     elif stepper == "newmark":
@@ -265,8 +266,8 @@ def _fail(status: int, where: Floats, counts: NDArray[np.int64], tow: Tow) -> No
     time, spot = float(where[0]), float(where[1])
     if status == SLACK:
         raise SlackCable(
-            f"The cable goes slack at t = {time:.2f} s, s = {spot:.1f} m of {tow.cable.length:g} m from the vehicle: its "
-            "tension falls to zero, where the sine series about one shape no longer holds."
+            f"The cable goes slack at t = {time:.2f} s, s = {spot:.1f} m of {tow.cable.length:g} m from the vehicle: "
+            "its tension falls to zero, where the sine series about one shape no longer holds."
         )
     if status == NOT_FINITE:
         raise NumericalFailure(
