@@ -1,0 +1,40 @@
+"""Checking the settings of an input: as `models.quantity.check_quantities`, tuples value by value."""
+
+from typing import Any
+
+from models.quantity import InvalidInput, quantities
+
+
+def check_settings(instance: Any) -> None:
+    """Raise `InvalidInput` for the first annotated value outside its bounds (``None`` is left alone)."""
+    for name, quantity in quantities(type(instance)).items():
+        value = getattr(instance, name)
+        if value is None:
+            continue
+        several = isinstance(value, tuple)
+        for i, one in enumerate(value if several else (value,)):
+            if not quantity.holds(one):
+                place = f"{type(instance).__name__}.{name}{f'[{i}]' if several else ''}"
+                raise InvalidInput(
+                    f"{place} ({quantity.symbol}) must be {quantity.bound_text} {quantity.unit}, "
+                    f"but it is {one:g} {quantity.unit}."
+                )
+
+
+def check_same_length(instance: Any, *names: str) -> None:
+    """Raise `InvalidInput` unless the named tuples have one length."""
+    lengths = [len(getattr(instance, name)) for name in names]
+    if len(set(lengths)) > 1:
+        given = ", ".join(f"{name} has {n}" for name, n in zip(names, lengths, strict=True))
+        raise InvalidInput(f"{type(instance).__name__} needs lists of one length, but {given} values.")
+
+
+def check_increasing(instance: Any, name: str) -> None:
+    """Raise `InvalidInput` unless the named tuple of times increases strictly."""
+    values = getattr(instance, name)
+    for i in range(1, len(values)):
+        if values[i] <= values[i - 1]:
+            raise InvalidInput(
+                f"{type(instance).__name__}.{name} must increase, but value {i} is {values[i - 1]:g} s "
+                f"and value {i + 1} is {values[i]:g} s."
+            )
