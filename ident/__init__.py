@@ -1,0 +1,1 @@
+"""Identification: configurations, learning-model loop, scores, studies, command line."""

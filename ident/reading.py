@@ -1,0 +1,85 @@
+"""The sections of a configuration file, checked against their keys, and the dataclasses they fill."""
+
+import tomllib
+from collections.abc import Callable, Mapping
+from typing import Any, TypeVar
+
+from ident.schema import did_you_mean, keys_of, read, shown
+from ident.sections import SECTIONS, keys_for
+from models.quantity import InvalidInput
+
+S = TypeVar("S")
+
+_HEADING = tuple(key.name for key in SECTIONS[""])
+
+
+class ConfigurationFile:
+    """The sections of a parsed file, checked against their keys."""
+
+    def __init__(self, text: str, source: str) -> None:
+        self.source = source
+        tables = _tables(_parsed(text, source), source)
+        tables.setdefault("cable", {})
+        self.given = tuple(f"{section}.{key}".lstrip(".") for section, table in tables.items() for key in table)
+        self._values = {name: read(table, keys_for(name, table), self.place(name)) for name, table in tables.items()}
+
+    def __contains__(self, section: str) -> bool:
+        return section in self._values
+
+    def place(self, section: str) -> str:
+        """File and section, for a message."""
+        return f"{self.source}: [{section}]" if section else f"{self.source}:"
+
+    def values(self, section: str) -> Mapping[str, Any]:
+        """Field name to value, as given."""
+        return self._values.get(section, {})
+
+    def fill(self, section: str, make: type[S]) -> S:
+        """The dataclass of a section, from those of the section's values that are its fields."""
+        names = {key.field for key in keys_of(make)}
+        return self.build(section, make, {k: v for k, v in self.values(section).items() if k in names})
+
+    def build(self, section: str, make: Callable[..., S], values: Mapping[str, Any]) -> S:
+        """Call `make`; what it says against the values together is told with file and section."""
+        try:
+            return make(**values)
+        except InvalidInput as error:
+            raise InvalidInput(f"{self.place(section)} {error}") from error
+
+    def checked_guesses(self, guesses: tuple[str, ...]) -> tuple[str, ...]:
+        """The guesses, each a key of the file, none twice."""
+        for i, guess in enumerate(guesses):
+            if guess not in self.given:
+                hint = did_you_mean(guess, self.given)
+                raise InvalidInput(f'{self.source}: guesses[{i}] = "{guess}" is not a key of the file{hint}')
+            if guess in guesses[:i]:
+                raise InvalidInput(f'{self.source}: guesses[{i}] = "{guess}" is there twice; drop one.')
+        return guesses
+
+
+def _parsed(text: str, source: str) -> Mapping[str, Any]:
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise InvalidInput(f"{source} is not valid TOML: {error}.") from error
+    except (ValueError, RecursionError) as error:  # thousands of digits, or of brackets
+        raise InvalidInput(f"{source} is not usable TOML: {error}.") from error
+
+
+def _tables(document: Mapping[str, Any], source: str) -> dict[str, Mapping[str, Any]]:
+    """Section name to table; keys above the first section under the empty name, ``[inputs.KIND]`` by its full name."""
+    tables: dict[str, Mapping[str, Any]] = {"": {k: v for k, v in document.items() if k in _HEADING}}
+    named = {k: v for k, v in document.items() if k not in _HEADING}
+    kinds = named.pop("inputs", {})
+    if not isinstance(kinds, Mapping):
+        raise InvalidInput(f"{source}: inputs = {shown(kinds)} must be sections such as [inputs.ramps].")
+    named |= {f"inputs.{kind}": table for kind, table in kinds.items()}
+    for name, table in named.items():
+        if name not in SECTIONS:
+            what = f"section [{name}]" if isinstance(table, Mapping) else f"key {name} = {shown(table)}"
+            hint = did_you_mean(name, [*(each for each in SECTIONS if each), *_HEADING])
+            raise InvalidInput(f"{source} has the unknown {what}{hint}")
+        if not isinstance(table, Mapping):
+            raise InvalidInput(f"{source}: {name} = {shown(table)} must be a section [{name}] with keys of its own.")
+        tables[name] = table
+    return tables

@@ -1,0 +1,43 @@
+"""Records from files as cases: projected on the ship's direction, and read through the operator they were made with."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from data_synth.records import PlanarRecord, planar, read_record, require_vehicle
+from ident.cases import Case, case_from_fixes, case_from_truth
+from models.drive import Start
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class RecordedCase:
+    """A record in its plane, and as a case to fit or score."""
+
+    planar: PlanarRecord
+    case: Case
+
+
+def recorded_case(path: Path, *, settle: float, window: float, start: Start) -> RecordedCase:
+    """Read a record, the vehicle's included.
+
+    Parameters
+    ----------
+    settle
+        Time from the record's start that is not scored [s].
+    window
+        Length of the differentiator's window [s]; 0 compares with the derivative of the record's own spline, for
+        records without noise.
+
+    Raises
+    ------
+    InvalidInput
+        The file is no record, has no vehicle, or leaves fewer than 20 scored samples.
+    """
+    record = planar(read_record(path))
+    vehicle = require_vehicle(record.record)
+    ship, name = record.record.ship, path.name
+    if window == 0.0:
+        case = case_from_truth(name, ship, vehicle, settle, start=start)
+    else:
+        smoothed = record.record.source == "deep-tow"
+        case = case_from_fixes(name, ship, vehicle, settle, window=window, smoother=smoothed, start=start)
+    return RecordedCase(planar=record, case=case)

@@ -1,0 +1,1 @@
+"""One study a file; each is what a command of the program does."""

@@ -1,0 +1,108 @@
+"""The committed sample pages: a run of every built-in configuration, the step study, and the spread over seeds."""
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import pandas as pd
+
+from ident import thesis
+from ident.configuration import Configuration, load
+from ident.learning import Job, fit_many
+from ident.manifest import versions
+from ident.places import MANIFEST, new_folder
+from ident.scores import model_row, scores_table
+from ident.studies import run as study
+from ident.studies.step import step
+from models import reduced
+from models.statics import static_shape
+from reports.files import write_json, write_table
+from reports.markdown import Page
+
+Progress = Callable[[str, float], None]
+
+NAMES = ("mangus-740", "autec-1200", "mangus-2500")
+STEP_NAME = "mangus-2500"
+SEEDS = (0, 1, 2, 3, 4)
+
+_HEADINGS = {
+    "configuration": "configuration",
+    "model": "model",
+    "record": "record",
+    "median": "median, m/s",
+    "worst": "worst seed, m/s",
+    "thesis": "thesis, m/s",
+    "met": "median at or below",
+}
+
+
+def gallery(*, out: Path, progress: Progress, names: Sequence[str] = NAMES, seeds: Sequence[int] = SEEDS) -> None:
+    """Make the pages of the built-in configurations, the step study, and the table of errors over the seeds."""
+    with new_folder(out) as folder:
+        tables = []
+        share = 1.0 / (len(names) + 1)
+        for i, name in enumerate(names):
+            began = i * share
+
+            def inside(stage: str, done: float, name: str = name, began: float = began) -> None:
+                progress(f"{name}: {stage}", began + 0.5 * share * done)
+
+            configuration = load(name)
+            study.run(configuration, out=folder / name, seed=0, models=None, progress=inside)
+            tables.append(errors_over_seeds(configuration, seeds, inside).assign(configuration=name))
+        progress("step study", 1.0 - share)
+        step(load(STEP_NAME), out=folder / "step-study", progress=lambda stage, done: None)
+        errors = pd.concat(tables, ignore_index=True)
+        write_table(folder / "errors-over-seeds.csv", errors, digits=6)
+        _page(folder, names, seeds, summary(errors))
+        write_json(folder / MANIFEST, {"program": "cable-ident", "command": "gallery", "versions": versions()})
+        progress("done", 1.0)
+
+
+def errors_over_seeds(configuration: Configuration, seeds: Sequence[int], progress: Progress) -> pd.DataFrame:
+    """Scores of every model on every record for several seeds of the input, columns as scores.csv and seed."""
+    parts = []
+    for seed in seeds:
+        progress(f"seed {seed}", 0.0)
+        records = study.prepare_records(configuration, seed)
+        shape = static_shape(configuration.tow)
+        case = records.cases[study.IDENTIFICATION]
+        jobs = [
+            Job(model=reduced.section(name, configuration.tow, shape), cases=(case,), profile=False)
+            for name in configuration.identification.models
+        ]
+        rows = [
+            model_row(replace(fit, seconds=0.0), each, simulation_s_per_hour=0.0)
+            for fit in fit_many(jobs)
+            for each in records.cases.values()
+        ]
+        parts.append(scores_table(rows).assign(seed=seed))
+    table = pd.concat(parts, ignore_index=True)
+    return table[["seed", "model", "record", "rms_velocity_m_s", "rms_position_m", "fit_percent", "outcome"]]
+
+
+def summary(errors: pd.DataFrame) -> pd.DataFrame:
+    """Median and worst error over the seeds beside what the thesis prints, columns as the page's table."""
+    rows = []
+    for (name, model, record), part in errors.groupby(["configuration", "model", "record"], sort=False):
+        printed = thesis.printed_errors(str(name), study.IDENTIFICATION, study.TRUTH)
+        here = printed[(printed["model"] == model) & (printed["record"] == record)]["rms_velocity_m_s"]
+        median, worst = part["rms_velocity_m_s"].median(), part["rms_velocity_m_s"].max()
+        bar = float(here.iloc[0]) if len(here) else float("nan")
+        met = "" if bar != bar else ("yes" if median <= bar else "no")
+        rows.append((name, model, record, median, worst, bar, met))
+    return pd.DataFrame(rows, columns=list(_HEADINGS))
+
+
+def _page(folder: Path, names: Sequence[str], seeds: Sequence[int], table: pd.DataFrame) -> None:
+    page = Page("Gallery")
+    page.paragraph(
+        f"Made by `cable-ident gallery` on {time.strftime('%Y-%m-%d', time.gmtime())}: one page a built-in "
+        "configuration with seed 0, the step study, and below the velocity errors over the seeds "
+        f"{', '.join(map(str, seeds))} of the standard input, each with its own verification truth."
+    )
+    page.bullets([f"[{name}]({name}/report.md)" for name in names] + ["[step study](step-study/report.md)"])
+    page.heading("Velocity errors over seeds")
+    page.table(table, _HEADINGS, {"median": ".4f", "worst": ".4f", "thesis": ".4f"})
+    page.write(folder / "README.md")

@@ -1,0 +1,48 @@
+"""The tow of a configuration file: its cable by one of two groups of keys, its vehicle, water and current."""
+
+from dataclasses import fields
+
+from ident.reading import ConfigurationFile
+from ident.sections import BY_LENGTH, BY_MATERIAL, SECTIONS
+from ident.settings import Material
+from models.cable import Cable
+from models.current import Current
+from models.quantity import InvalidInput
+from models.tow import Tow
+from models.vehicle import Towfish, Vehicle
+
+_DEFAULTS = {field.name: field.default for field in fields(Tow)}
+
+
+def read_tow(file: ConfigurationFile) -> Tow:
+    """The tow, from the sections [water], [cable], [vehicle] or [towfish], [tow] and [current]."""
+    bodies = [name for name in ("vehicle", "towfish") if name in file]
+    if len(bodies) != 1:
+        found = "has both" if bodies else "has neither"
+        raise InvalidInput(f"{file.source} needs one of the sections [vehicle] and [towfish], but {found}.")
+    current = file.build("current", Current.from_profile, file.values("current")) if "current" in file else None
+    vehicle = file.fill("vehicle", Vehicle) if "vehicle" in file else file.fill("towfish", Towfish)
+    given = {**file.values("water"), **file.values("tow")}
+    cable = _cable(file, given.get("water_density", _DEFAULTS["water_density"]))
+    return Tow(cable=cable, vehicle=vehicle, current=current, **given)
+
+
+def _cable(file: ConfigurationFile, water_density: float) -> Cable:
+    """The cable by its material or by its length; both or neither is an error."""
+    values = dict(file.values("cable"))
+    groups = [group for group in (BY_MATERIAL, BY_LENGTH) if any(field in values for field in group)]
+    names = {key.field: key.name for key in SECTIONS["cable"]}
+    if len(groups) != 1:
+        choice = " or ".join(
+            "(" + ", ".join(names[field] for field in group) + ")" for group in (BY_MATERIAL, BY_LENGTH)
+        )
+        found = "keys of both" if groups else "none of them"
+        raise InvalidInput(f"{file.place('cable')} needs {choice}, one of the two, but it has {found}.")
+    missing = [key for key in SECTIONS["cable"] if key.field in groups[0] and key.field not in values]
+    if missing:
+        raise InvalidInput(f"{file.place('cable')} lacks the key {missing[0].label}; give {missing[0].wanted}.")
+    if groups == [BY_LENGTH]:
+        return file.build("cable", Cable, values)
+    material = Material(**{field: values.pop(field) for field in BY_MATERIAL})
+    values |= {"density": material.density, "young_modulus": material.young_modulus, "water_density": water_density}
+    return file.build("cable", Cable.from_material, values)
