@@ -84,6 +84,7 @@ class Job:
     starts: int = 1
     seed: int = 0
     profile: bool = True
+    within: float | None = None
 
 
 def fit(
@@ -95,6 +96,7 @@ def fit(
     starts: int = 1,
     seed: int = 0,
     profile: bool = True,
+    within: float | None = None,
 ) -> Fit:
     """Fit a model's parameters to records, from the values it has.
 
@@ -110,6 +112,8 @@ def fit(
         Of the further start points and of the search for twins.
     profile
         Let wide 95 % intervals follow the profile of the cost (`ident.profile`).
+    within
+        Search within this factor of the model's own values (`SearchSpace.of`).
 
     Raises
     ------
@@ -122,7 +126,7 @@ def fit(
             f"{starts} starts and a budget of {budget}."
         )
     began = time.perf_counter()
-    space = SearchSpace.of(model, fixed=fixed)
+    space = SearchSpace.of(model, fixed=fixed, within=within)
     results, near = search_all(space, cases, budget=budget, starts=starts, seed=seed)
     best = nearest_of_equals(space, results)
     seconds = time.perf_counter() - began
@@ -184,6 +188,7 @@ def fit_many(
             starts=job.starts,
             seed=job.seed,
             profile=job.profile,
+            within=job.within,
         )
         if done is not None:
             done(place, result)

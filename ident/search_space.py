@@ -41,8 +41,13 @@ class SearchSpace:
     upper: Floats
 
     @classmethod
-    def of(cls, model: ReducedModel, *, fixed: Collection[str] = ()) -> "SearchSpace":
+    def of(cls, model: ReducedModel, *, fixed: Collection[str] = (), within: float | None = None) -> "SearchSpace":
         """The search space of a model's parameters except those named in `fixed`.
+
+        Parameters
+        ----------
+        within
+            Search each parameter within this factor of the value it has, instead of over its whole range.
 
         Raises
         ------
@@ -63,14 +68,18 @@ class SearchSpace:
             )
         searched = [parameters[i] for i in free]
         shift = np.array([SHIFT if p.unit == "s" else 0.0 for p in searched])
+        lower, upper = np.array([p.lower for p in searched]), np.array([p.upper for p in searched])
+        if within is not None:
+            values = np.array([p.value for p in searched])
+            lower, upper = np.maximum(lower, values / within), np.minimum(upper, values * within)
         return cls(
             model=model,
             names=tuple(parameters[i].name for i in free),
             free=free,
             values=tuple(p.value for p in parameters),
             shift=shift,
-            lower=np.log(np.array([p.lower for p in searched]) + shift),
-            upper=np.log(np.array([p.upper for p in searched]) + shift),
+            lower=np.log(lower + shift),
+            upper=np.log(upper + shift),
         )
 
     @property

@@ -125,7 +125,7 @@ def looks(models: Iterable[str]) -> dict[str, Look]:
             taken[name] = next(free)
     found = {}
     for i, name in enumerate(name for name in names if is_baseline(name)):
-        found[name] = Look(GREY if i % 2 else BLACK, DASHES[1 + 2 * (i % 2)], "x", 1.0)
+        found[name] = Look((BLACK, GREY, BLACK)[i % 3], (DASHES[1], DASHES[3], "-")[i % 3], "x", (1.0, 1.0, 0.6)[i % 3])
     for name in names:
         if not is_baseline(name):
             k = taken[group(name)]

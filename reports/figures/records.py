@@ -209,10 +209,15 @@ def _side_label(made: Figure, panels: Sequence[Axes], words: str) -> None:
     made.text(first.x0 - 0.55 / style.WIDTH, middle, words, rotation=90, ha="center", va="center", fontsize=8.5)
 
 
+#: Characters of a key that fit in one line across the page.
+_KEY_LENGTH = 75
+
+
 def _key(made: Figure, entries: Sequence[tuple[str, dict[str, Any]]]) -> None:
     """One legend for the whole figure, below it."""
     handles = [Line2D([], [], **line, label=label) for label, line in entries]
-    made.legend(handles=handles, loc="lower right", ncols=len(handles), borderaxespad=0.2)
+    short = sum(len(label) for label, _ in entries) <= _KEY_LENGTH
+    made.legend(handles=handles, loc="lower right", ncols=len(handles) if short else 3, borderaxespad=0.2)
 
 
 def _limit(panel: Axes, values: Sequence[Floats]) -> None:

@@ -68,6 +68,10 @@ def error_against_run_time(scores: pd.DataFrame, records: Sequence[str]) -> Figu
     return made
 
 
+#: Panels that fit side by side.
+_PANELS = 3
+
+
 def bars(
     scores: pd.DataFrame,
     records: Sequence[str],
@@ -90,10 +94,14 @@ def bars(
     """
     models = [str(name) for name in dict.fromkeys(scores["model"])]
     look = style.looks(models)
-    made, axes = style.figure(0.85 + 0.21 * len(models), columns=len(records), sharey=True)
+    columns = len(records) if len(records) <= _PANELS else 2
+    rows = -(-len(records) // columns)
+    made, axes = style.figure(0.5 + rows * (0.35 + 0.21 * len(models)), rows=rows, columns=columns, sharey=True)
+    for panel in axes.flat[len(records) :]:
+        panel.set_axis_off()
     places = np.arange(len(models))[::-1]
     goals = thesis if thesis is not None and len(thesis) else scores.iloc[:0]
-    for panel, record in zip(axes[0], records, strict=True):
+    for panel, record in zip(axes.flat, records, strict=False):
         values = by_model(scores, record, "rms_velocity_m_s", models).replace(np.inf, np.nan).to_numpy()
         panel.barh(
             places,
@@ -121,7 +129,8 @@ def bars(
         panel.grid(visible=False, axis="y")
         panel.locator_params(axis="x", nbins=4)
         panel.tick_params(axis="y", length=0)
-    axes[0, 0].set_yticks(places, models)
+    for row in axes[:, 0]:
+        row.set_yticks(places, models)
     handles = []
     if len(goals):
         handles.append(
