@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from models.kernels import kernel
 from models.spectral.basis import LENGTH, PITCH, Fields
 from models.spectral.forces import TENSION, WORK_ROWS
-from models.spectral.implicit import (
+from models.spectral.system import (
     BUDGET,
     DONE,
     NO_CONVERGENCE,

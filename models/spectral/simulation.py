@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from models.quantity import InvalidInput, NumericalFailure
 from models.spectral.basis import Fields, default_stations, prepare
 from models.spectral.explicit import march_explicit
-from models.spectral.implicit import BUDGET, DONE, NOT_FINITE, SLACK, march
+from models.spectral.implicit import march
+from models.spectral.system import BUDGET, DONE, NOT_FINITE, SLACK
 from models.spectral.winch import Winch, control_arrays
 from models.statics import SlackCable, StaticShape, static_shape
 from models.tow import Tow
