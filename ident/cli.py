@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from ident.exits import exit_code
-from ident.terminal import progress, write_table
+from ident.terminal import progress, write_notes, write_table
 from models.quantity import InvalidInput, Quantity, non_negative, positive
 
 if TYPE_CHECKING:
@@ -229,6 +229,7 @@ def fit(
             seed=seed,
             progress=report,
         )
+    write_notes(result.notes)
     write_table(result.table)
 
 
@@ -247,6 +248,7 @@ def verify(
 
     chosen: Literal["rest", "steady"] | None = None if start is None else start.value
     result = study.verify(fit, records=tuple(records), out=out, start=chosen, window=differentiator)
+    write_notes(result.notes)
     write_table(result.table)
 
 

@@ -15,6 +15,12 @@ class RecordedCase:
     planar: PlanarRecord
     case: Case
 
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What was counted or repaired on reading, and what to doubt, a line each."""
+        record, warning = self.planar.record, self.planar.warning
+        return tuple(f"{self.case.name}: {note}" for note in (*record.notes, *((warning,) if warning else ())))
+
 
 def recorded_case(path: Path, *, settle: float, window: float, start: Start) -> RecordedCase:
     """Read a record, the vehicle's included.

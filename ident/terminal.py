@@ -100,6 +100,12 @@ def _numeric(headings: Sequence[str], rows: Sequence[Mapping[str, str]]) -> list
     return [all(not cell or cell.lstrip("+-").replace(".", "", 1)[:1].isdigit() for cell in each) for each in columns]
 
 
+def write_notes(notes: Sequence[str]) -> None:
+    """Write what there is to say beside a result, a line each, where it does not mix with the table."""
+    for note in notes:
+        sys.stderr.write(f"note: {note}\n")
+
+
 def write_error(message: str) -> None:
     """Write ``error: ...`` as one line; line breaks become spaces, unprintable characters their escapes."""
     line = " ".join(message.split("\n"))

@@ -19,8 +19,9 @@ Progress = Callable[[str, float], None]
 
 @dataclass(frozen=True, kw_only=True)
 class FitResult:
-    """The fits for the terminal: a row a parameter."""
+    """The fits for the terminal: a row a parameter, and what there is to say of the records."""
 
+    notes: tuple[str, ...]
     table: list[dict[str, str]]
 
 
@@ -54,15 +55,10 @@ def fit(
     with new_file(out) as temporary:
         progress("reading the records", 0.0)
         window = configuration.sensor.window if window is None else window
-        cases = tuple(
-            recorded_case(
-                path,
-                settle=configuration.scoring.settle,
-                window=window,
-                start=start,
-            ).case
-            for path in records
-        )
+        recorded = [
+            recorded_case(path, settle=configuration.scoring.settle, window=window, start=start) for path in records
+        ]
+        cases = tuple(record.case for record in recorded)
         shape = static_shape(configuration.tow)
         jobs = [
             Job(
@@ -92,7 +88,8 @@ def fit(
             start=start,
             window=window,
         )
-    return FitResult(table=[row for found in fits for row in _rows(found)])
+    notes = tuple(note for record in recorded for note in record.notes)
+    return FitResult(notes=notes, table=[row for found in fits for row in _rows(found)])
 
 
 def held_delay(model: ReducedModel, hold: bool) -> tuple[str, ...]:

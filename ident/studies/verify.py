@@ -19,9 +19,10 @@ from reports.files import write_scores
 
 @dataclass(frozen=True, kw_only=True)
 class VerifyResult:
-    """The scores for the terminal."""
+    """The scores for the terminal, and what there is to say of the records."""
 
     scores: pd.DataFrame
+    notes: tuple[str, ...]
 
     @property
     def table(self) -> list[dict[str, str]]:
@@ -59,15 +60,18 @@ def verify(fit: Path, *, records: Sequence[Path], out: Path, start: Start | None
         shape = static_shape(configuration.tow)
         models = [(saved, saved.rebuild(configuration.tow, shape)) for saved in content.fits]
         rows = []
+        notes: list[str] = []
         for path in records:
-            case = recorded_case(
+            recorded = recorded_case(
                 path,
                 settle=configuration.scoring.settle,
                 window=content.window if window is None else window,
                 start=content.start if start is None else start,
-            ).case
+            )
+            case = recorded.case
+            notes += recorded.notes
             rows.append(baseline_row(RIGID, case, rigid(case.drive)))
             rows += [saved_row(saved, model, case) for saved, model in models]
         scores = scores_table(rows)
         write_scores(temporary, scores)
-    return VerifyResult(scores=scores)
+    return VerifyResult(scores=scores, notes=tuple(notes))

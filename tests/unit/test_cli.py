@@ -29,6 +29,7 @@ class Result:
 
     table: tuple[dict[str, str], ...] = ({"model": "massless-4-linear", "rms": "0.014"},)
     folder = Path("made")
+    notes = ("tow.csv: 1 gap in time",)
 
 
 @pytest.fixture
