@@ -68,7 +68,7 @@ def simulate(tow: Tow, ship: Trace, *, links: int = FEWEST_LINKS, step: float = 
     position, velocity = np.zeros((len(ship), 3)), np.zeros((len(ship), 3))
     position[:, 0], velocity[:, 0] = fine[:, 0] + ship.position[0, 0], fine[:, 1]
     position[:, 1] = ship.position[:, 1]
-    position[:, 2] = ship.position[0, 2] - tow.cable.length
+    position[:, 2] = ship.position[0, 2] - static_shape(tow).depth
     return FineChainResult(
         vehicle=Trace(t=ship.t, position=position, velocity=velocity), links=links, step=step, error=error
     )

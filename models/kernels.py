@@ -7,7 +7,9 @@ or an upgrade can never run old code. ``NUMBA_CACHE_DIR`` set by the user wins.
 
 import hashlib
 import os
+import shutil
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
@@ -26,7 +28,18 @@ def _cache_folder() -> Path:
     return base / "cable-ident" / f"kernels-{digest.hexdigest()[:16]}"
 
 
+def _drop_old(folder: Path, keep: int = 4) -> None:
+    """Delete the kernels of older sources but a few, so that edits and upgrades do not pile up."""
+    with suppress(OSError):
+        others = sorted(
+            (each for each in folder.parent.glob("kernels-*") if each != folder), key=lambda each: each.stat().st_mtime
+        )
+        for each in others[: -keep or None]:
+            shutil.rmtree(each, ignore_errors=True)
+
+
 if "NUMBA_CACHE_DIR" not in os.environ:
+    _drop_old(_cache_folder())
     setattr(numba.config, "CACHE_DIR", str(_cache_folder()))  # noqa: B010 (numba makes its settings at run time)
 
 

@@ -48,8 +48,9 @@ END_CONDITIONS = ("weak", "pointwise")
     WEAK,  # 1 for the weak end condition, 0 for the printed pointwise one
     TENSION_TOP,  # static tension at the tow point [N]
     SHEAR_0,  # du/dz at the vehicle [1/s]
+    MEAN_STRAIN,  # mean static strain
     AXIAL_LOSS,  # tau_a, time of the cable's internal loss [s]
-) = range(21)
+) = range(22)
 #: Names of the station rows in `Fields.station`.
 (
     X,  # s/L
@@ -70,7 +71,7 @@ END_CONDITIONS = ("weak", "pointwise")
 class Fields(NamedTuple):
     """What the kernels read, in few arrays: J stations, N harmonics, SI units.
 
-    `scalar` (21,) and `station` (12, J) are named above. `sines` (2, N, J) = sin(n pi x) and its derivative in s,
+    `scalar` (22,) and `station` (12, J) are named above. `sines` (2, N, J) = sin(n pi x) and its derivative in s,
     `sines_t` (2, J, N) the same by station; `moments` (2, J, 2N + 1) = cos, sin(k pi x); `axial` (2, K, J): the
     integral of g from the vehicle to station j is sum_k axial[1, k, j] c_k with c = axial[0] @ g, and c_0 is the
     integral over the whole cable. `body` are the parameters of `body_array`.
@@ -180,13 +181,14 @@ def prepare(
     integral[:, 0] = x
     integral[:, 1:] = 0.5 * (V[:, 2 : K + 1] - V[:, : K - 1]) / (2.0 * degree[1:] + 1.0)
     bottom, upper = (0.5 * math.pi, 0.5 * math.pi) if vertical else (float(shape.phi[0]), float(shape.phi[-1]))
-    scalar = np.zeros(21)
+    scalar = np.zeros(22)
     scalar[LENGTH], scalar[AXIAL_STIFFNESS] = L, cable.axial_stiffness
     scalar[WEIGHT], scalar[LATERAL_MASS] = cable.weight_in_water, cable.mass + cable.added_mass
     scalar[TANGENTIAL_DRAG] = k_t
     scalar[TANGENT_X], scalar[TANGENT_Z] = 0.0 if vertical else math.cos(bottom), math.sin(bottom)
     scalar[TOP_X], scalar[TOP_Z] = 0.0 if vertical else math.cos(upper), math.sin(upper)
     scalar[TENSION_0], scalar[FLOW_0] = shape.T[0], shape.flow[0]
+    scalar[MEAN_STRAIN] = 0.5 * (weight @ e)
     scalar[AXIAL_LOSS] = cable.axial_damping
     scalar[TENSION_TOP] = shape.T[-1]
     scalar[BEND_0] = 0.0 if vertical else _end_slope(shape)

@@ -156,7 +156,7 @@ def march_explicit(
             error_w[i] = (halves[n + i] - whole[n + i]) / 15.0
         substitute(A, pivot, error_w)
         for i in range(n):
-            error = max(error, abs(error_w[i])) if i < 2 or i >= nb else error
+            error = max(error, abs(error_w[i]))
         error /= tolerance
         if not error <= 1.0:
             counts[3] += 1

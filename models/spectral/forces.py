@@ -105,13 +105,15 @@ def cable_forces(f: Fields, y: Floats, v: Floats, end: Floats, F: Floats, statio
             for k in range(K):
                 coefficient[k] += f.axial[0, k, j] * g
         bend = coefficient[0]
-        stretch -= bend * lam
+        stretch -= bend
         for j in range(J):
             # p(s), the axial deflection: the bend's share, and the uniform rest so that p meets both ends.
             axial = y[0] + x[j] * (end[0] - y[0] - bend)
             for k in range(K):
                 axial += f.axial[1, k, j] * coefficient[k]
-            phi[j] += axial * bend_s[j]
+            # Where the point x is, not the material that passes it: the payout moves it along.
+            axial += x[j] * end[4]
+            phi[j] += axial * bend_s[j] / lam
             water[j] += shear[j] * (axial * sin_s[j] + q[j] * cos_s[j])
         for k in range(K):
             coefficient[k] = 0.0
@@ -140,7 +142,7 @@ def cable_forces(f: Fields, y: Floats, v: Floats, end: Floats, F: Floats, statio
             turn_s, turn_c = sin_s[j] * cosine + cos_s[j] * sine, cos_s[j] * cosine - sin_s[j] * sine
         slip = along[j] - water[j] * turn_c
         f_t = -k_t * slip * abs(slip)
-        g = (w * cos_s[j] * phi[j] - f_t + field[STATIC_TANGENTIAL, j]) * lam + w * sin_s[j] * (lam - 1.0)
+        g = (w * cos_s[j] * phi[j] - f_t) * lam + field[STATIC_TANGENTIAL, j] + w * sin_s[j] * (lam - 1.0)
         for k in range(K):
             coefficient[k] += f.axial[0, k, j] * g
         v_r = rate[j] + water[j] * turn_s
@@ -171,11 +173,12 @@ def cable_forces(f: Fields, y: Floats, v: Floats, end: Floats, F: Floats, statio
         T_d = mean_tension + T[j] - mean_tilt
         T[j] = T_s[j] + T_d
         a = -c[j] * T[j] * phi[j]
-        b[j] += c[j] * lam * T_d * bend_s[j]
+        # The cable paid out carries the static load too, and spreads the static bend over its length.
+        b[j] += c[j] * bend_s[j] * (T_d - (lam - 1.0) * T_s[j])
         F[1] += b[j] * (1.0 - x[j]) - a / L
         # Gradient of the stretch: the coupling of lateral motion into the mean tension.
         pull = c[j] * phi[j] * stretch_s[j]
-        bow = c[j] * bend_s[j] * lam
+        bow = c[j] * bend_s[j]
         grad[1] -= pull / L + bow * (1.0 - x[j])
         for n in range(N):
             F[2 + n] += a * Dt[j, n] + b[j] * St[j, n]

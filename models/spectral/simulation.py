@@ -153,7 +153,7 @@ def simulate(
     raise NumericalFailure(
         f"The spectral simulator's estimated error in the vehicle's velocity is still {error:.3g} m/s RMS over the "
         f"record of {ship.t[-1] - ship.t[0]:g} s with {sines} harmonics, above the tolerance of {tolerance:g} m/s; "
-        "smooth the ship's record, or allow a larger tolerance."
+        "smooth the ship's record, give the cable an axial damping if it rings in heave, or allow a larger tolerance."
     )
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.kernels import fast_kernel, kernel
-from models.spectral.basis import TANGENT_X, TANGENT_Z, TOP_X, TOP_Z, Fields
+from models.spectral.basis import MEAN_STRAIN, TANGENT_X, TANGENT_Z, TOP_X, TOP_Z, Fields
 from models.spectral.body import body_balance, couple, end_motion
 from models.spectral.forces import cable_forces, cable_matrix, cable_momentum
 
@@ -37,8 +37,9 @@ def ship_at(f: Fields, t: float, knots: Floats, ship: Floats, place: int, end: F
     vx = (3.0 * a[0] * d + 2.0 * b[0]) * d + c[0]
     vz = (3.0 * a[1] * d + 2.0 * b[1]) * d + c[1]
     top_x, top_z = f.scalar[TOP_X], f.scalar[TOP_Z]
-    end[0] = top_x * x + top_z * z - end[4]
-    end[1] = top_x * vx + top_z * vz - end[5]
+    stretched = 1.0 + f.scalar[MEAN_STRAIN]
+    end[0] = top_x * x + top_z * z - stretched * end[4]
+    end[1] = top_x * vx + top_z * vz - stretched * end[5]
     end[2] = -top_z * x + top_x * z
     end[3] = -top_z * vx + top_x * vz
     return place

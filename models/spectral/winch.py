@@ -1,5 +1,6 @@
 """Winch settings of the spectral model: cable through the sheave, at most 5 % of its length."""
 
+import math
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -17,7 +18,11 @@ LARGEST_SHARE = 0.05
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Payout:
-    """Open loop: cable paid out [m] against time [s], linear between the points, positive out."""
+    """Open loop: cable paid out [m] against time [s], linear between the points, positive out.
+
+    The drum follows the table with its corners rounded over a second, and starts from rest: a table that rises at its
+    very start loses a quarter of a second of its first rate.
+    """
 
     t: Floats
     length: Floats
@@ -99,9 +104,17 @@ def steer(control: Floats, times: Floats, values: Floats, t: float, depth: float
         wanted = min(max(wanted, rate - control[2] * period), rate + control[2] * period)
         if wanted == asked:
             memory[4] += error * period
-    # The drum stops at the share of the cable that the model allows.
-    wanted = min(max(wanted, 2.0 * (control[6] - payout) / period - rate), 2.0 * (control[7] - payout) / period - rate)
+        # The drum brakes in time to stop at the share of the cable that the model allows.
+        wanted = min(wanted, _braking(control[7] - payout, rate, period, control[2]))
+        wanted = max(wanted, -_braking(payout - control[6], -rate, period, control[2]))
     memory[2] = wanted
+
+
+@kernel
+def _braking(room: float, rate: float, period: float, limit: float) -> float:
+    """Greatest rate at the end of a period that can still be braked to rest within the room left."""
+    half = 0.5 * period
+    return limit * (math.sqrt(max(half * half + 2.0 * (room - rate * half) / limit, 0.0)) - half)
 
 
 @kernel
