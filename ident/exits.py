@@ -14,6 +14,7 @@ from typing import NoReturn
 
 import typer
 
+from ident.places import interruption
 from ident.terminal import write_error
 from models.quantity import InvalidInput, NumericalFailure
 
@@ -82,16 +83,21 @@ def _interruptible() -> Iterator[None]:
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    names = [name for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]
-    numbers = [number for name in names if signal.getsignal(number := getattr(signal, name)) is signal.SIG_DFL]
+    names = [name for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
+    numbers = [getattr(signal, name) for name in names]
+    usual = (signal.SIG_DFL, signal.default_int_handler)
+    before = {number: signal.getsignal(number) for number in numbers if signal.getsignal(number) in usual}
+    interruption.clear()
     try:
-        for number in numbers:
+        for number in before:
             signal.signal(number, _interrupt)
         yield
     finally:
-        for number in numbers:
-            signal.signal(number, signal.SIG_DFL)
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def _interrupt(number: int, frame: object) -> NoReturn:
+    # A callback of a library may swallow the exception: whoever goes on asks `interruption` before the result is kept.
+    interruption.set()
     raise KeyboardInterrupt

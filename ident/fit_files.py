@@ -141,7 +141,7 @@ def read_fits(path: Path) -> FitFile:
     return FitFile(
         configuration_name=_entry(content, "configuration_name", str, where),
         configuration_text=_entry(content, "configuration", str, where),
-        start="steady" if _entry(content, "start", str, where) == "steady" else "rest",
+        start=_start(content, where),
         window=_number(content.get("differentiator_s"), f"{where}: differentiator_s"),
         fits=tuple(_saved(fit, f"{path}: fits[{i}]") for i, fit in enumerate(fits)),
     )
@@ -185,6 +185,15 @@ def _saved(entry: Any, where: str) -> SavedFit:
         outcome=_entry(entry, "outcome", str, where),
         reason=_entry(entry, "reason", str, where),
     )
+
+
+def _start(content: Mapping[str, Any], where: str) -> Start:
+    start: str = _entry(content, "start", str, where)
+    if start == "rest":
+        return "rest"
+    if start == "steady":
+        return "steady"
+    raise InvalidInput(f"{where}: 'start' must be rest or steady, but it is {start!r}.")
 
 
 def _entry(content: Mapping[str, Any], key: str, kind: type, where: str) -> Any:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ident.cases import Case, Floats
+from ident.places import interruption
 from ident.search_space import SearchSpace
 from models import reduced
 from models.quantity import NumericalFailure
@@ -23,7 +24,11 @@ def residuals(model: reduced.ReducedModel, cases: Sequence[Case]) -> Floats:
     ------
     NumericalFailure
         A simulation failed.
+    KeyboardInterrupt
+        The user has asked to stop; a search in another thread than the main one learns of it here.
     """
+    if interruption.is_set():
+        raise KeyboardInterrupt
     parts = [case.residual(reduced.respond(model, case.drive)) for case in cases]
     return parts[0] if len(parts) == 1 else np.concatenate(parts)
 

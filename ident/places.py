@@ -3,11 +3,15 @@
 import os
 import secrets
 import shutil
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from models.quantity import InvalidInput
+
+#: Set when the user has asked to stop, even where a library swallowed the exception.
+interruption = threading.Event()
 
 #: The file that marks a folder as an earlier result, which a new one may replace.
 MANIFEST = "manifest.json"
@@ -33,6 +37,7 @@ def new_folder(out: Path) -> Iterator[Path]:
         temporary.mkdir()
     try:
         yield temporary
+        _stop_if_asked()
         with _explained(out):
             _swap_in(temporary, target)
     finally:
@@ -63,11 +68,17 @@ def new_file(out: Path) -> Iterator[Path]:
         temporary.touch(exist_ok=False)
     try:
         yield temporary
+        _stop_if_asked()
         with _explained(out):
             temporary.replace(target)
     finally:
         with suppress(OSError):
             temporary.unlink(missing_ok=True)
+
+
+def _stop_if_asked() -> None:
+    if interruption.is_set():
+        raise KeyboardInterrupt
 
 
 def _resolved(out: Path) -> Path:

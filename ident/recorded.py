@@ -1,11 +1,13 @@
 """Records from files as cases: projected on the ship's direction, and read through the operator they were made with."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from data_synth.records import PlanarRecord, planar, read_record, require_vehicle
 from ident.cases import Case, case_from_fixes, case_from_truth
 from models.drive import Start
+from models.quantity import InvalidInput
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -20,6 +22,23 @@ class RecordedCase:
         """What was counted or repaired on reading, and what to doubt, a line each."""
         record, warning = self.planar.record, self.planar.warning
         return tuple(f"{self.case.name}: {note}" for note in (*record.notes, *((warning,) if warning else ())))
+
+
+def distinct(paths: Sequence[Path]) -> None:
+    """Refuse records that a table could not tell apart, and one given twice, which would count as two.
+
+    Raises
+    ------
+    InvalidInput
+        Two paths have one name.
+    """
+    names = [path.name for path in paths]
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise InvalidInput(
+            f"Records are told apart by their file names, but {', '.join(twice)} is there more than once; "
+            "drop one or rename it."
+        )
 
 
 def recorded_case(path: Path, *, settle: float, window: float, start: Start) -> RecordedCase:

@@ -23,6 +23,10 @@ def configuration_table(configuration: Configuration) -> pd.DataFrame:
     rows: list[tuple[str, str, object, str, bool, str]] = []
     for section in _SYSTEM:
         rows += _rows(section, document.get(section, {}), configuration)
+    for section, table in document.items():
+        # A guess counts wherever it stands.
+        if section not in _SYSTEM and isinstance(table, dict):
+            rows += [row for row in _rows(section, table, configuration) if row[4]]
     given = {(part, name) for part, name, *_ in rows}
     cable = configuration.tow.cable
     for name in ("mass", "weight_in_water", "axial_stiffness"):

@@ -6,6 +6,8 @@ import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 
+from ident.places import interruption
+
 #: Told what is being done and how much of the whole is done (0 to 1); may be called from any thread.
 Progress = Callable[[str, float], None]
 
@@ -53,6 +55,8 @@ def _lines() -> Progress:
     def report(stage: str, fraction: float) -> None:
         nonlocal done
         with lock:
+            if interruption.is_set():  # a fit that ends after the user has stopped the run
+                return
             percent = max(done, min(round(100.0 * fraction), 100))
             if stage in told and percent // 10 == done // 10:
                 return

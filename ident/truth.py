@@ -1,5 +1,6 @@
 """The records of a run: made with the reference simulator to identify on, and with a changed system to verify on."""
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,9 +12,13 @@ from ident.configuration import Configuration
 from models import fine_chain, spectral
 from models.current import Current
 from models.drive import Start
+from models.statics import static_shape
 from models.tow import Tow
 from models.trace import Trace
 from models.vehicle import Towfish
+
+#: Largest angle of the static cable from the vertical for which a chain of small angles may stand for the truth [rad].
+LARGEST_SLANT = math.radians(15.0)
 
 #: Streams of random numbers: each use has its own, so that one does not move another.
 INPUT, COEFFICIENTS, SENSOR, SEARCH = range(4)
@@ -58,22 +63,27 @@ def reference_run(configuration: Configuration, ship: Trace) -> spectral.Spectra
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Verification:
-    """The verification records of a run: ship, true vehicle, its fixes, and the truth in a current.
+    """The verification records of a run: ship, true vehicle, and the truth in a current.
 
-    `changes` are the factors on the drag and mass coefficients, `error` the truth's own error estimate [m/s].
+    `changes` are the factors on the drag and mass coefficients, `links` those of the fine chain or ``None`` where the
+    spectral simulator stands in, `slant` the static cable's largest angle from the vertical [rad], `error` the truth's
+    own error estimate [m/s], ``None`` where its resolution was given.
     """
 
     ship: Trace
     truth: Trace
-    fixes: Trace
     in_current: Trace
     changes: dict[str, float]
-    links: int
-    error: float
+    links: int | None
+    slant: float
+    error: float | None
 
 
 def verification(configuration: Configuration, seed: int) -> Verification:
     """Recorded-style traces of T 6.2 from a fine inertial chain with changed coefficients.
+
+    The chain hangs: where the static cable leans by more than 15 degrees, or its body pitches, the spectral simulator
+    with the same changes takes its place.
 
     Every drag and added-mass coefficient is raised or lowered by the configured share, the sign drawn from the seed.
     """
@@ -84,19 +94,32 @@ def verification(configuration: Configuration, seed: int) -> Verification:
     signs = rng.choice([-1.0, 1.0], len(names))
     changes = dict(zip(names, (1.0 + settings.coefficient_change * signs).tolist(), strict=True))
     changed = _changed(configuration.tow, changes)
-    run = fine_chain.simulate(changed, ship, links=settings.links)
-    flowing = fine_chain.simulate(
-        replace(changed, current=_added(changed.current, settings.current_speed)), ship, links=settings.links
-    )
+    flowing = replace(changed, current=_added(changed.current, settings.current_speed))
+    slant = max(float(np.abs(static_shape(tow).phi - 0.5 * math.pi).max()) for tow in (changed, flowing))
+    links = settings.links if slant <= LARGEST_SLANT and not isinstance(changed.vehicle, Towfish) else None
+    error: float | None
+    if links is not None:
+        chain = fine_chain.simulate(changed, ship, links=links)
+        truth, error = chain.vehicle, chain.error
+        in_current = fine_chain.simulate(flowing, ship, links=links).vehicle
+    else:
+        reference = reference_run(replace(configuration, tow=changed), ship)
+        truth, error = reference.vehicle, reference.error
+        in_current = reference_run(replace(configuration, tow=flowing), ship).vehicle
     return Verification(
         ship=ship,
-        truth=run.vehicle,
-        fixes=measure(run.vehicle, configuration.sensor, stream(seed, SENSOR)),
-        in_current=flowing.vehicle,
+        truth=truth,
+        in_current=in_current,
         changes=changes,
-        links=settings.links,
-        error=run.error,
+        links=links,
+        slant=slant,
+        error=error,
     )
+
+
+def fixes(configuration: Configuration, vehicle: Trace, seed: int) -> Trace:
+    """What the configured sensor sees of a vehicle."""
+    return measure(vehicle, configuration.sensor, stream(seed, SENSOR))
 
 
 def _changed(tow: Tow, factor: dict[str, float]) -> Tow:

@@ -1,5 +1,6 @@
 """Sentences that follow from the tables: which model is best, what it costs, and how far to trust it."""
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -82,6 +83,10 @@ def ranked(scores: pd.DataFrame, record: str, column: str = "rms_velocity_m_s") 
     return rows.sort_values(column, kind="stable")
 
 
+#: Fit percent from which a response is worth trusting although its parameters are not determined.
+_TRUSTED_FIT = 50.0
+
+
 def verdict(scores: pd.DataFrame, parameters: pd.DataFrame) -> list[str]:
     """The result of a run in a few sentences: the best model, its errors and its cost, and what they are worth.
 
@@ -118,18 +123,14 @@ def verdict(scores: pd.DataFrame, parameters: pd.DataFrame) -> list[str]:
     sentences.append(_cheaper(order))
     sentences.append(_growth(best, own, seen))
     sentences.append(_ending(best))
-    sentences.append(_determined(name, parameters))
+    sentences.append(_determined(best, parameters))
     return [sentence for sentence in sentences if sentence]
 
 
 def _relative(row: "pd.Series[Any]") -> str:
-    """The error as a share of the vehicle's own motion."""
-    own = float(row["vehicle_rms_velocity_m_s"])
-    return (
-        f", {significant(100.0 * row['rms_velocity_m_s'] / own)} % of the vehicle's own {own:.3f} m/s"
-        if own > 0
-        else ""
-    )
+    """The error beside what the vehicle's motion about its mean holds."""
+    fit = float(row.get("fit_percent", math.nan))
+    return f", a fit of {fit:.1f} %" if math.isfinite(fit) else ""
 
 
 def _cheaper(order: pd.DataFrame) -> str:
@@ -165,8 +166,9 @@ def _ending(row: "pd.Series[Any]") -> str:
     return f"Its search did **not** converge: it {OUTCOMES.get(outcome, outcome)}."
 
 
-def _determined(model: str, parameters: pd.DataFrame) -> str:
-    """How many of a model's parameters its record determines."""
+def _determined(best: "pd.Series[Any]", parameters: pd.DataFrame) -> str:
+    """How many of a model's parameters its record determines, and whether the response stands all the same."""
+    model = str(best["model"])
     if parameters.empty or not (parameters["model"] == model).any():
         return ""
     rows = parameters[parameters["model"] == model]
@@ -174,10 +176,12 @@ def _determined(model: str, parameters: pd.DataFrame) -> str:
     if not loose:
         words = "its one parameter" if len(rows) == 1 else f"all {in_words(len(rows))} of its parameters"
         return f"The record determines {words}."
-    return (
-        f"The record does not determine its {listed(loose)}: the response can be trusted, "
-        f"{'that value' if len(loose) == 1 else 'those values'} alone cannot."
-    )
+    words = f"The record does not determine its {listed(loose)}"
+    far_off = float(best.get("fit_percent", math.nan)) < _TRUSTED_FIT
+    if far_off or str(best["outcome"]) not in ("converged", "flat"):
+        return f"{words}, and its response is too far off, or its search not at an optimum, to be trusted without."
+    values = "that value" if len(loose) == 1 else "those values"
+    return f"{words}: the response can be trusted as far as the errors above go, {values} alone cannot."
 
 
 def _loose(rows: pd.DataFrame) -> list[str]:
@@ -275,6 +279,24 @@ def against_baselines(scores: pd.DataFrame, record: str) -> str:
         f"{words}; the best trivial predictor, {simple['model']}, by {significant(simple['rms_position_m'])} m: "
         f"the model is {abs(change):.0f} % {comparison}. "
         f"{_of_all(beaten, len(models)).capitalize()} beat{'s' if beaten < 2 else ''} it."
+    )
+
+
+def against_baselines_in_velocity(scores: pd.DataFrame, record: str) -> str:
+    """How the best model of a tow compares with each baseline in velocity, which is what was fitted."""
+    order = ranked(scores, record, "rms_velocity_m_s")
+    models = without_baselines(order)
+    trivial = order[order["model"].map(is_baseline).astype(bool)]
+    if models.empty or trivial.empty:
+        return ""
+    best = models.iloc[0]
+    others = [f"{row['model']} {row['rms_velocity_m_s']:.4f}" for row in trivial.to_dict("records")]
+    beaten = int((trivial["rms_velocity_m_s"] > best["rms_velocity_m_s"]).sum())
+    won = in_words(beaten) if beaten else "none"
+    return (
+        f"In velocity, which is what was fitted, {best['model']} is the best model with "
+        f"{best['rms_velocity_m_s']:.4f} m/s, beside {listed(others)}: it beats {won} of "
+        f"{count(len(trivial), 'baseline')}."
     )
 
 

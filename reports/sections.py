@@ -140,7 +140,8 @@ def manifest(page: Page, content: Mapping[str, Any], configuration_text: str) ->
     if not content and not configuration_text:
         return
     page.heading("Manifest")
-    rows = [(item, value if isinstance(value, str) else exact(value)) for item, value in _flat(content)]
+    told = {key: value for key, value in content.items() if value != configuration_text}
+    rows = [(item, value if isinstance(value, str) else exact(value)) for item, value in _flat(told)]
     if rows:
         page.table(pd.DataFrame(rows, columns=["item", "value"]))
     if configuration_text:

@@ -112,7 +112,11 @@ def write_tow_page(folder: Path, material: TowMaterial) -> None:
     page.paragraph(material.description)
     names = [tow.name for tow in material.tows]
     page.paragraph(*findings.tows_in_words(material.scores, names))
-    page.bullets(findings.against_baselines(material.scores, name) for name in names)
+    page.bullets(
+        f"{findings.against_baselines(material.scores, name)} "
+        f"{findings.against_baselines_in_velocity(material.scores, name)}".rstrip()
+        for name in names
+    )
     if material.limits:
         page.paragraph("What these models leave out, and these records hold:")
         page.bullets(material.limits)
@@ -150,7 +154,7 @@ def _tow(page: Page, album: Album, tow: TowRecord, scores: pd.DataFrame) -> None
     page.bullets(f"**Warning**: {words}" for words in cautions)
     _table(page, tow.name, scores)
     link = album.draw(
-        f"tow-{tow.name}-track",
+        f"tow-{Path(tow.name).stem}-track",
         records.tracks,
         tow.series,
         tow.ship_track,
@@ -161,14 +165,14 @@ def _tow(page: Page, album: Album, tow: TowRecord, scores: pd.DataFrame) -> None
     page.figure(
         link, f"Tow {tow.name}: plan view from the dots on, and motion against time. Grey: the part that is scored."
     )
-    link = album.draw(f"tow-{tow.name}-velocity", records.velocities, tow.series)
+    link = album.draw(f"tow-{Path(tow.name).stem}-velocity", records.velocities, tow.series)
     page.figure(link, f"Tow {tow.name}: vehicle velocity along the axis, observed and predicted, over the scored part.")
-    link = album.draw(f"tow-{tow.name}-errors", records.errors, tow.series, scored_only=True)
+    link = album.draw(f"tow-{Path(tow.name).stem}-errors", records.errors, tow.series, scored_only=True)
     page.figure(
         link, f"Tow {tow.name}: errors over the scored part, baselines beside the models. RMS above each panel."
     )
     if tow.residual_tests:
-        link = album.draw(f"tow-{tow.name}-residuals", residuals.residual_tests, tow.residual_tests)
+        link = album.draw(f"tow-{Path(tow.name).stem}-residuals", residuals.residual_tests, tow.residual_tests)
         page.figure(link, f"Tow {tow.name}: correlations of the residuals, 95 % bands grey.")
 
 

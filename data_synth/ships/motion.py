@@ -6,6 +6,7 @@ from models.quantity import InvalidInput
 from models.trace import Floats, Trace
 
 _FEWEST_STEPS = 4  # the spline through the samples is cubic
+_MOST_STEPS = 10_000_000
 
 
 def sample_times(duration: float, sample: float) -> Floats:
@@ -14,13 +15,18 @@ def sample_times(duration: float, sample: float) -> Floats:
     Raises
     ------
     InvalidInput
-        The duration holds fewer than four steps.
+        The duration holds fewer than four steps, or more than ten million: a day in hundredths of a second.
     """
     steps = int(np.floor(duration / sample + 1e-9))
     if steps < _FEWEST_STEPS:
         raise InvalidInput(
             f"A ship input needs at least {_FEWEST_STEPS} steps, but {duration:g} s at {sample:g} s has {steps}; "
             "make the duration longer or the sample shorter."
+        )
+    if steps > _MOST_STEPS:
+        raise InvalidInput(
+            f"A ship input has at most {_MOST_STEPS:,} steps, but {duration:g} s at {sample:g} s has {steps:,}; "
+            "make the duration shorter or the sample longer."
         )
     return np.asarray(sample * np.arange(steps + 1), dtype=float)
 

@@ -8,6 +8,7 @@ import pandas as pd
 
 from ident.linear import frequency_response
 from models import reduced, spectral
+from models.quantity import NumericalFailure
 from models.reduced import ReducedModel
 from models.tow import Tow
 from models.trace import Trace
@@ -27,7 +28,7 @@ def reference_response(tow: Tow, amplitude: float, omega: float) -> tuple[float,
     # From rest: a raised cosine over the first period, whose speed does not jump.
     ease = np.where(t < period, 0.5 - 0.5 * np.cos(0.5 * omega * np.minimum(t, period)), 1.0)
     ship = Trace.along_x(t, tow.speed * t + amplitude * ease * np.sin(omega * t))
-    tolerance = max(_SHARE * amplitude * omega, 1e-6)
+    tolerance = max(_SHARE * amplitude * omega, 1e-9)
     run = spectral.simulate(tow, ship, tolerance=tolerance)
     late = slice(_SETTLING * _SAMPLES, None)
     motion = run.vehicle.position[late, 0] - tow.speed * t[late]
@@ -36,17 +37,25 @@ def reference_response(tow: Tow, amplitude: float, omega: float) -> tuple[float,
     return math.hypot(s, c), math.atan2(c, s)
 
 
-def reference_points(tow: Tow, amplitudes: Sequence[float], omegas: Sequence[float]) -> pd.DataFrame:
-    """The reference simulator's response at every amplitude and frequency, phases continuous."""
-    rows = []
+def reference_points(tow: Tow, amplitudes: Sequence[float], omegas: Sequence[float]) -> tuple[pd.DataFrame, list[str]]:
+    """The reference simulator's response at every amplitude and frequency, phases continuous.
+
+    A point that cannot be simulated is left out; the second result says which and why.
+    """
+    rows, missing = [], []
     for amplitude in amplitudes:
-        found = [reference_response(tow, amplitude, omega) for omega in sorted(omegas)]
-        phases = np.unwrap([phase for _, phase in found])
+        found = {}
+        for omega in sorted(omegas):
+            try:
+                found[omega] = reference_response(tow, amplitude, omega)
+            except NumericalFailure as failure:
+                missing.append(f"{amplitude:g} m at {omega:g} rad/s is left out: {failure}")
+        phases = np.unwrap([phase for _, phase in found.values()])
         rows += [
             (amplitude, omega, 20.0 * math.log10(max(gain, 1e-12)), math.degrees(phase))
-            for omega, (gain, _), phase in zip(sorted(omegas), found, phases, strict=True)
+            for (omega, (gain, _)), phase in zip(found.items(), phases, strict=True)
         ]
-    return pd.DataFrame(rows, columns=_COLUMNS)
+    return pd.DataFrame(rows, columns=_COLUMNS), missing
 
 
 def reduced_curves(

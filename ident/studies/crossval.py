@@ -15,13 +15,12 @@ from ident.configuration import Configuration
 from ident.learning import Fit, Job, fit_many
 from ident.manifest import manifest
 from ident.places import new_folder
-from ident.recorded import RecordedCase, recorded_case
+from ident.recorded import RecordedCase, distinct, recorded_case
 from ident.scores import Row, baseline_row, model_row, parameters_table, score, scores_table
 from ident.series import measured_series
 from ident.studies.fit import held_delay
 from models import reduced
 from models.drive import Start
-from models.quantity import InvalidInput
 from models.reduced import Response
 from models.statics import static_shape
 from reports.files import write_json, write_parameters, write_scores
@@ -33,7 +32,7 @@ _WITHIN = 10.0
 
 Progress = Callable[[str, float], None]
 
-_USED = ("", "water", "cable", "vehicle", "towfish", "tow", "current", "sensor", "identification")
+_USED = ("", "water", "cable", "vehicle", "towfish", "tow", "current", "identification")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,12 +71,11 @@ def crossval(
         A record cannot be read, two have one name, or a part has fewer than 20 scored samples.
     """
     names = configuration.identification.models
+    distinct(records)
     with new_folder(out) as folder:
         progress("reading the records", 0.0)
         tows = [_split(configuration, path, fraction, start) for path in records]
         labels = [tow.scored.name for tow in tows]
-        if len(set(labels)) < len(labels):
-            raise InvalidInput(f"The records need names that differ, but they are {', '.join(labels)}.")
         shape = static_shape(configuration.tow)
         settings = configuration.identification
         jobs = [
@@ -126,10 +124,10 @@ def crossval(
                     columns=["record", "model", "outcome", "reason"],
                 ),
                 parameters=parameters,
-                limits=_LIMITS,
+                limits=_limits(tows),
                 configuration=scene.configuration_table(configuration),
                 configuration_text=configuration.text,
-                unused=scene.unused(configuration, configuration.unused_beside(_USED)),
+                unused=scene.unused(configuration, _unused(configuration, start)),
                 manifest=about,
             ),
         )
@@ -141,19 +139,36 @@ def crossval(
     return CrossvalResult(folder=out, table=_summary(scores))
 
 
+#: What the models leave out of any tow, and of those whose format tells how they were made.
 _LIMITS = (
+    "A current that the configuration does not give moves the vehicle, and the models answer with an offset.",
+    "Turns leave the plane that the models live in; the motion across the axis is reported, not modelled.",
+)
+_DEEP_TOW_LIMITS = (
     (
         "The cable's length is not in the records and changes under the winch by hundreds of metres; the models keep "
         "one guessed length and the springs that follow from it."
     ),
-    "The current is unknown and left out: a steady one moves the vehicle and the models answer with an offset.",
-    "Turns leave the plane that the models live in; the motion across the axis is reported, not modelled.",
     (
         "The published track went through a smoother that took the ship's velocity for the vehicle's. The models' "
         "output goes through the same operator, so the velocities compare, but what the smoother removed cannot be "
         "tested."
     ),
 )
+
+
+def _unused(configuration: Configuration, start: Start) -> tuple[str, ...]:
+    """The given keys that this study does not read.
+
+    Of the sensor's it reads the differentiator, and the settling time only where models start at rest.
+    """
+    read = {"sensor.differentiator_s", *(("input.settle_s",) if start == "rest" else ())}
+    return tuple(key for key in configuration.unused_beside(_USED) if key not in read)
+
+
+def _limits(tows: Sequence[_Tow]) -> tuple[str, ...]:
+    deep = any(tow.recorded.planar.record.source == "deep-tow" for tow in tows)
+    return (*_LIMITS, *(_DEEP_TOW_LIMITS if deep else ()))
 
 
 def _split(configuration: Configuration, path: Path, fraction: float, start: Start) -> _Tow:
@@ -265,7 +280,8 @@ def _description(configuration: Configuration, fraction: float, start: Start) ->
         f"scored on the rest, starting {begin}. Parameters stay within a factor of {_WITHIN:g} of "
         f"the description's. Velocity is read from the fixes and from the models' positions by "
         f"the same operators, a differentiator over {configuration.sensor.window:g} s last. Position is not fitted: as "
-        "the rigid offset does, every model starts from its mean offset over the fitted part."
+        "the rigid offset does, every model starts from its mean offset over the fitted part; the constant velocity is "
+        "the line through the last 300 s of that part."
     )
 
 

@@ -8,7 +8,7 @@ from ident.configuration import Configuration
 from ident.fit_files import write_fits
 from ident.learning import Fit, Job, fit_many
 from ident.places import new_file
-from ident.recorded import recorded_case
+from ident.recorded import distinct, recorded_case
 from models import reduced
 from models.drive import Start
 from models.reduced import ReducedModel
@@ -52,6 +52,7 @@ def fit(
         A record cannot be read or scored, or the place cannot be written.
     """
     settings = configuration.identification
+    distinct(records)
     with new_file(out) as temporary:
         progress("reading the records", 0.0)
         window = configuration.sensor.window if window is None else window

@@ -10,13 +10,12 @@ import pandas as pd
 from ident import thesis
 from ident.configuration import Configuration, load
 from ident.costs import cost_summary, costs
-from ident.learning import Job, fit_many
+from ident.learning import fit_many
 from ident.manifest import versions
 from ident.places import MANIFEST, new_folder
 from ident.scores import model_row, scores_table
 from ident.studies import run as study
 from ident.studies.step import step
-from models import reduced
 from models.statics import static_shape
 from reports.files import write_json, write_table
 from reports.markdown import Page
@@ -76,11 +75,11 @@ def errors_over_seeds(configuration: Configuration, seeds: Sequence[int], progre
     for seed in seeds:
         progress(f"seed {seed}", 0.0)
         records = study.prepare_records(configuration, seed)
-        shape = static_shape(configuration.tow)
         case = records.cases[study.IDENTIFICATION]
+        names = configuration.identification.models
         jobs = [
-            Job(model=reduced.section(name, configuration.tow, shape), cases=(case,), profile=False)
-            for name in configuration.identification.models
+            replace(job, profile=False)
+            for job in study.identification_jobs(configuration, names, static_shape(configuration.tow), case, seed)
         ]
         rows = [
             model_row(replace(fit, seconds=0.0), each, simulation_s_per_hour=0.0)

@@ -8,14 +8,13 @@ import numpy as np
 
 from data_synth import inputs
 from data_synth.records import join, read_record, write_record
-from data_synth.sensors import measure
-from data_synth.ships import superpose
+from data_synth.ships import sample_times, superpose
 from ident.configuration import Configuration
 from ident.places import new_file
 from ident.sections import INPUTS
 from ident.settings import Winch, WinchDepth
 from ident.studies.simulate import describe
-from ident.truth import INPUT, SENSOR, stream, towed, verification
+from ident.truth import INPUT, fixes, stream, towed, verification
 from models import spectral
 from models.quantity import InvalidInput
 from models.spectral import DepthWinch, Payout
@@ -54,9 +53,11 @@ def record(
             check = verification(configuration, seed)
             ship, vehicle = check.ship, check.truth
             changes = ", ".join(f"{name} {100.0 * (factor - 1.0):+.0f} %" for name, factor in check.changes.items())
-            words = f"the truth of the verification, a fine chain of {check.links} links with {changes}."
+            maker = "the spectral simulator" if check.links is None else f"a fine chain of {check.links} links"
+            words = f"the truth of the verification, {maker} with {changes}."
         else:
-            ship, winch = _motion(configuration, kind.split("+"), duration, seed)
+            kinds = [kind] if Path(kind).is_file() else kind.split("+")
+            ship, winch = _motion(configuration, kinds, duration, seed)
             settings = configuration.spectral
             result = spectral.simulate(
                 configuration.tow,
@@ -69,7 +70,7 @@ def record(
             )
             vehicle, words = result.vehicle, describe(result)
         if sensor:
-            vehicle = measure(vehicle, configuration.sensor, stream(seed, SENSOR))
+            vehicle = fixes(configuration, vehicle, seed)
             words = f"fixes every {configuration.sensor.fix_interval:g} s of " + words
         write_record(join(configuration.name, ship, vehicle), temporary)
     return f"{out} written (seed {seed}): {words}"
@@ -94,7 +95,7 @@ def _motion(
             settings = configuration.inputs[kind] if settings is None else settings
             rng = stream(seed, INPUT) if place == 0 else np.random.default_rng([seed, INPUT, place])
             tracks.append(inputs.ship_trace(_lasting(settings, duration), rng))
-        elif Path(kind).exists():
+        elif kind and Path(kind).exists():
             tracks.append(_track(Path(kind), duration))
         else:
             raise InvalidInput(
@@ -104,7 +105,7 @@ def _motion(
         raise InvalidInput("A record has one winch, but winch and winch-depth were both given; drop one.")
     if not tracks:
         assert sample is not None
-        t = np.arange(round(length / sample) + 1) * sample
+        t = sample_times(length, sample)
         tracks.append(Trace.along_x(t, np.zeros(t.size)))
     ship = tracks[0] if len(tracks) == 1 else superpose(*tracks)
     return towed(configuration.tow, ship), winches[0] if winches else None
@@ -140,5 +141,8 @@ def _track(path: Path, duration: float | None) -> Trace:
         raise InvalidInput(f"{path}: a record is made along x, but this track has y too; use `simulate` for it.")
     if duration is None:
         return ship
+    lasts = float(ship.t[-1] - ship.t[0])
+    if duration > lasts:
+        raise InvalidInput(f"{path} lasts {lasts:g} s, less than the --duration of {duration:g} s; ask for less.")
     keep = ship.t - ship.t[0] <= duration
     return Trace(t=ship.t[keep], position=ship.position[keep])

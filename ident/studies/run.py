@@ -3,7 +3,7 @@
 import math
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -20,9 +20,11 @@ from ident.places import new_folder
 from ident.scores import baseline_row, model_row, parameters_table, scores_table, simulation_seconds_per_hour
 from ident.series import measured_series, response_table, trace_table, truth_series
 from ident.studies import bode
+from ident.studies.fit import held_delay
 from ident.truth import (
     SEARCH,
     Verification,
+    fixes,
     identification_ship,
     reference_run,
     start_of,
@@ -68,6 +70,7 @@ class Records:
     run: SpectralResult
     ship: Trace
     check: Verification
+    fixes: Trace
     cases: dict[str, Case]
 
 
@@ -84,6 +87,7 @@ def run(
         The truth cannot be simulated.
     """
     names = tuple(models) if models is not None else configuration.identification.models
+    configuration = replace(configuration, identification=replace(configuration.identification, models=names))
     with new_folder(out) as folder:
         began = time.perf_counter()
         progress("simulating the truth", 0.02)
@@ -108,7 +112,7 @@ def run(
             {
                 IDENTIFICATION: trace_table(records.ship, records.run.vehicle),
                 TRUTH: trace_table(check.ship, check.truth),
-                MEASURED: trace_table(check.ship, check.fixes),
+                MEASURED: trace_table(check.ship, records.fixes),
                 CURRENT: trace_table(check.ship, check.in_current),
                 **{f"{series.record}-responses": response_table(series) for series in material.records},
             },
@@ -138,16 +142,34 @@ def prepare_records(configuration: Configuration, seed: int) -> Records:
     ship = identification_ship(configuration, seed)
     result = reference_run(configuration, ship)
     check = verification(configuration, seed)
+    seen = fixes(configuration, check.truth, seed)
     settle, start = configuration.scoring.settle, start_of(configuration.tow)
     cases = {
         IDENTIFICATION: case_from_truth(IDENTIFICATION, ship, result.vehicle, settle, start=start),
         TRUTH: case_from_truth(TRUTH, check.ship, check.truth, settle, start=start),
-        MEASURED: case_from_fixes(
-            MEASURED, check.ship, check.fixes, settle, window=configuration.sensor.window, start=start
-        ),
+        MEASURED: case_from_fixes(MEASURED, check.ship, seen, settle, window=configuration.sensor.window, start=start),
         CURRENT: case_from_truth(CURRENT, check.ship, check.in_current, settle, start=start),
     }
-    return Records(run=result, ship=ship, check=check, cases=cases)
+    return Records(run=result, ship=ship, check=check, fixes=seen, cases=cases)
+
+
+def identification_jobs(
+    configuration: Configuration, names: Sequence[str], shape: StaticShape, case: Case, seed: int
+) -> list[Job]:
+    """The fits of a run as its configuration asks for them, in the order of the names."""
+    settings = configuration.identification
+    search_seed = int(stream(seed, SEARCH).integers(2**31))
+    return [
+        Job(
+            model=model,
+            cases=(case,),
+            fixed=held_delay(model, settings.delay == "fixed"),
+            budget=settings.budget,
+            starts=settings.starts,
+            seed=search_seed,
+        )
+        for model in (reduced.section(name, configuration.tow, shape) for name in names)
+    ]
 
 
 def _fits(
@@ -158,24 +180,7 @@ def _fits(
     seed: int,
     progress: Progress,
 ) -> tuple[Fit, ...]:
-    settings = configuration.identification
-    search_seed = int(stream(seed, SEARCH).integers(2**31))
-    case = records.cases[IDENTIFICATION]
-    jobs = []
-    for name in names:
-        model = reduced.section(name, configuration.tow, shape)
-        has_delay = any(parameter.name == "delay" for parameter in reduced.parameters(model))
-        fixed = ("delay",) if has_delay and settings.delay == "fixed" else ()
-        jobs.append(
-            Job(
-                model=model,
-                cases=(case,),
-                fixed=fixed,
-                budget=settings.budget,
-                starts=settings.starts,
-                seed=search_seed,
-            )
-        )
+    jobs = identification_jobs(configuration, names, shape, records.cases[IDENTIFICATION], seed)
     finished: list[str] = []
 
     def done(place: int, fit: Fit) -> None:
@@ -216,13 +221,13 @@ def _scores(fits: Sequence[Fit], records: Records, responses: dict[str, dict[str
     return scores_table(rows)
 
 
-def _bode(configuration: Configuration, fits: Sequence[Fit]) -> tuple[pd.DataFrame, pd.DataFrame]:
+def _bode(configuration: Configuration, fits: Sequence[Fit]) -> tuple[pd.DataFrame, list[str], pd.DataFrame]:
     settings = configuration.bode
-    points = bode.reference_points(configuration.tow, settings.amplitudes, settings.omegas)
+    points, missing = bode.reference_points(configuration.tow, settings.amplitudes, settings.omegas)
     curves = bode.reduced_curves(
         [fit.model for fit in fits if fit.outcome != "failed"], settings.amplitudes, settings.omegas
     )
-    return points, curves
+    return points, missing, curves
 
 
 def _material(
@@ -233,7 +238,7 @@ def _material(
     fits: Sequence[Fit],
     responses: dict[str, dict[str, Response]],
     scores: pd.DataFrame,
-    frequencies: tuple[pd.DataFrame, pd.DataFrame],
+    frequencies: tuple[pd.DataFrame, list[str], pd.DataFrame],
 ) -> RunMaterial:
     result, check = records.run, records.check
     named = {reduced.info(fit.model).model: fit for fit in fits}
@@ -293,9 +298,9 @@ def _material(
             for twin in found.twins
         ],
         bode_points=frequencies[0],
-        bode_curves=frequencies[1],
+        bode_curves=frequencies[2],
         bode_note="Quadratic models are linearised anew at every amplitude and frequency: 8/(3 pi) r V at each node, "
-        "V the node's own velocity amplitude, iterated until it agrees with itself.",
+        "V the node's own velocity amplitude, iterated until it agrees with itself. " + " ".join(frequencies[1]),
         static_shape=(x, z),
         snapshots=[(float(records.ship.t[i]), *result.cable_at(int(i))) for i in moments],
         snapshots_note="At rest and at moments of the identification record.",
@@ -335,7 +340,7 @@ def _material(
                 "steps": result.steps,
             },
             verification={
-                "simulator": "fine inertial chain",
+                "simulator": "spectral" if check.links is None else "fine inertial chain",
                 "links": check.links,
                 "error_m_s": check.error,
                 "coefficients": check.changes,
@@ -433,11 +438,18 @@ def _input_note(configuration: Configuration, result: SpectralResult, seed: int)
 
 def _truth_note(configuration: Configuration, check: Verification) -> str:
     changes = ", ".join(f"{name} {100.0 * (factor - 1.0):+.0f} %" for name, factor in check.changes.items())
+    slant = f"{math.degrees(check.slant):.0f} degrees"
+    if check.links is not None:
+        maker = f"a fine inertial chain of {check.links} links with a kernel of its own"
+        doubt = f"its angles are taken as small (the static cable leans by at most {slant})"
+    else:
+        maker = "the spectral simulator, because the cable leans too far for the fine chain or its body pitches"
+        doubt = f"so the simulator itself is not put to the test (the static cable leans by up to {slant})"
+    error = "no error estimate" if check.error is None else f"estimated error {check.error:.1e} m/s RMS"
     return (
-        f"Interim truth: a fine inertial chain of {check.links} links with a kernel of its own (estimated error "
-        f"{check.error:.1e} m/s RMS), not an independent three-dimensional simulator and no record from the sea. Its "
-        f"coefficients differ from those that the models were fitted with: {changes}. The angles are small, the "
-        "motion planar. Sensors: a fix every "
+        f"Interim truth: {maker} ({error}), not an independent three-dimensional simulator and no record from the "
+        f"sea; {doubt}, the motion is planar. Its coefficients differ from those that the models were fitted with: "
+        f"{changes}. Sensors: a fix every "
         f"{configuration.sensor.fix_interval:g} s with {configuration.sensor.fix_sigma:g} m of noise, "
         f"{100.0 * configuration.sensor.dropout_fraction:g} % dropouts in runs, an offset of "
         f"{configuration.sensor.offset:g} m; velocity by a Savitzky-Golay differentiator over "

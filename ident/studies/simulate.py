@@ -1,6 +1,5 @@
 """The reference simulator on a ship's track from a file."""
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -61,14 +60,15 @@ def simulate(
         )
         vehicle = plane.on_map(result.vehicle)
         written = Record(
-            name=record.name,
+            name=configuration.name,
             ship=record.ship,
             vehicle=Trace(t=vehicle.t, position=vehicle.position),
             depth=-vehicle.position[:, 2],
             tension=result.vehicle.tension,
         )
-        write_record(replace(written, name=configuration.name), temporary)
-    return f"{out} written: {describe(result)}"
+        write_record(written, temporary)
+    counted = "".join(f" {note}" for note in record.notes)
+    return f"{out} written: {describe(result)}{counted}"
 
 
 def describe(result: spectral.SpectralResult) -> str:

@@ -13,8 +13,7 @@ from ident import scene, thesis
 from ident.configuration import Configuration
 from ident.manifest import manifest
 from ident.places import new_folder
-from ident.truth import INPUT, stream, towed
-from models import spectral
+from ident.truth import INPUT, reference_run, stream
 from models.quantity import InvalidInput
 from models.statics import midpoint_travel_time, static_shape, travel_time
 from models.tow import Tow
@@ -46,7 +45,7 @@ def step(configuration: Configuration, *, out: Path, progress: Progress) -> Step
     Raises
     ------
     InvalidInput
-        The place cannot be written, or the configuration has a towfish, whose weight is not one number.
+        The place cannot be written, the cable does not hang, or the body is a towfish, whose weight is not one number.
     NumericalFailure
         A simulation fails.
     """
@@ -56,20 +55,27 @@ def step(configuration: Configuration, *, out: Path, progress: Progress) -> Step
             "give a [vehicle] instead."
         )
     settings, own = configuration.step, configuration.tow
+    if own.speed != 0.0 or own.current is not None:
+        raise InvalidInput(
+            "The step study times a wave down a hanging cable, but the configuration has a [tow] or a [current], in "
+            "which an inclined cable hands motion on along itself at once; leave both out."
+        )
     with new_folder(out) as folder:
         runs = len(settings.lengths) + len(settings.weights)
         by_length, by_weight = [], []
         for i, length in enumerate(settings.lengths):
             progress(f"step on {length:g} m", 0.7 * i / runs)
-            by_length.append(_response(_changed(own, length=length), settings.speed, f"{length:g} m"))
+            changed = replace(configuration, tow=_changed(own, length=length))
+            by_length.append(_response(changed, f"{length:g} m"))
         for i, weight in enumerate(settings.weights):
             progress(f"step with {weight:g} N", 0.7 * (len(settings.lengths) + i) / runs)
-            by_weight.append(_response(_changed(own, weight=weight), settings.speed, f"{weight:g} N"))
-        ship = towed(own, standard_input(configuration.input, stream(0, INPUT)))
+            changed = replace(configuration, tow=_changed(own, weight=weight))
+            by_weight.append(_response(changed, f"{weight:g} N"))
+        ship = standard_input(configuration.input, stream(0, INPUT))
         random = {}
         for i, length in enumerate(settings.lengths):
             progress(f"random input on {length:g} m", 0.7 + 0.2 * i / len(settings.lengths))
-            run = spectral.simulate(_changed(own, length=length), ship, tolerance=configuration.spectral.tolerance)
+            run = reference_run(replace(configuration, tow=_changed(own, length=length)), ship)
             assert run.vehicle.velocity is not None
             random[f"{length:g} m"] = run.vehicle.velocity[:, 0]
         progress("drawing the page", 0.9)
@@ -119,11 +125,12 @@ def _changed(tow: Tow, *, length: float | None = None, weight: float | None = No
     return replace(tow, vehicle=replace(tow.vehicle, weight_in_water=weight))
 
 
-def _response(tow: Tow, speed: float, label: str) -> StepResponse:
-    track: Trace = towed(tow, step_track(Step(duration=_DURATION, sample=_SAMPLE, speed=speed, start=0.0)))
-    run = spectral.simulate(tow, track, tolerance=1e-3 * abs(speed) if speed else 1e-4)
+def _response(configuration: Configuration, label: str) -> StepResponse:
+    tow, speed = configuration.tow, configuration.step.speed
+    track: Trace = step_track(Step(duration=_DURATION, sample=_SAMPLE, speed=speed, start=0.0))
+    run = reference_run(configuration, track)
     assert run.vehicle.velocity is not None
-    velocity = run.vehicle.velocity[:, 0] - tow.speed
+    velocity = run.vehicle.velocity[:, 0]
     shape = static_shape(tow)
     return StepResponse(
         label=label,

@@ -10,7 +10,7 @@ from ident.baselines import RIGID, rigid
 from ident.configuration import Configuration
 from ident.fit_files import read_fits
 from ident.places import new_file
-from ident.recorded import recorded_case
+from ident.recorded import distinct, recorded_case
 from ident.scores import baseline_row, saved_row, scores_table
 from models.drive import Start
 from models.statics import static_shape
@@ -54,6 +54,7 @@ def verify(fit: Path, *, records: Sequence[Path], out: Path, start: Start | None
     InvalidInput
         A file cannot be read, scored or written.
     """
+    distinct(records)
     with new_file(out) as temporary:
         content = read_fits(fit)
         configuration = Configuration.from_text(content.configuration_text, content.configuration_name, str(fit))
