@@ -124,8 +124,9 @@ def cable_forces(f: Fields, y: Floats, v: Floats, end: Floats, F: Floats, statio
         bend = coefficient[0]
     for j in range(J):
         along[j] = v[0] + x[j] * (end[1] - v[0] - bend)
-        for k in range(K):
-            along[j] += f.axial[1, k, j] * coefficient[k]
+        if p[CURVED] != 0.0:
+            for k in range(K):
+                along[j] += f.axial[1, k, j] * coefficient[k]
         phi[j] *= stretch_s[j]
         stretch += 0.5 * lam * c[j] * phi[j] * phi[j]
     # The internal loss sees the linear part of the stretch's rate.

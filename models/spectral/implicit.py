@@ -201,7 +201,7 @@ def march(
                     pi_hat[i] = pi[0, i] + step * _W * (F[0, i] + F[1, i])
                     w[2, i] = w[0, i] + (w[1, i] - w[0, i]) / c
             ok = solve_stage(
-                f, u_hat, pi_hat, end, gh, 0.1 * tolerance, k == 1, w[k], u[k], pi[k], F[k], cable, station, A, Y,
+                f, u_hat, pi_hat, end, gh, 0.3 * tolerance, k == 1, w[k], u[k], pi[k], F[k], cable, station, A, Y,
                 pivot, counts,
             )  # fmt: skip
             if not ok:

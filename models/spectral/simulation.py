@@ -26,7 +26,7 @@ Start = Literal["rest", "steady"]
 #: Most steps of a run, accepted and rejected.
 STEP_BUDGET = 5_000_000
 #: Local error per step that a wanted error of the whole record allows, measured on the built-in configurations.
-_LOCAL_SHARE = 0.2
+_LOCAL_SHARE = 0.24
 #: Harmonics and tolerance of the companion run, and how much smaller the error of the finer run is at least.
 _COMPANION_HARMONICS, _COMPANION_TOLERANCE, _COMPANION_RATIO = 0.6, 4.0, 0.3
 _REFINEMENTS = 5
@@ -177,7 +177,7 @@ def first_harmonics(tow: Tow, ship: Trace, shape: StaticShape, tolerance: float)
     drag = 2.0 * tow.cable.normal_drag(tow.water_density) * (speed + abs(tow.speed))
     tension = float(shape.tension_at(0.5 * tow.cable.length))
     waves = tow.cable.length / math.pi * math.sqrt(omega * drag / tension)
-    wanted = math.ceil((5.0 + 3.9 * waves) * math.pow(1e-4 / tolerance, 0.3))
+    wanted = math.ceil((5.2 + 4.3 * waves) * math.pow(1e-4 / tolerance, 0.3))
     return min(_MOST_HARMONICS, max(4, wanted))
 
 
