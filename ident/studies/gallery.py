@@ -13,6 +13,7 @@ from ident.costs import cost_summary, costs
 from ident.learning import fit_many
 from ident.manifest import versions
 from ident.places import MANIFEST, new_folder
+from ident.run_records import IDENTIFICATION, TRUTH, prepare_records
 from ident.scores import model_row, scores_table
 from ident.studies import run as study
 from ident.studies.step import step
@@ -74,8 +75,8 @@ def errors_over_seeds(configuration: Configuration, seeds: Sequence[int], progre
     parts = []
     for seed in seeds:
         progress(f"seed {seed}", 0.0)
-        records = study.prepare_records(configuration, seed)
-        case = records.cases[study.IDENTIFICATION]
+        records = prepare_records(configuration, seed)
+        case = records.cases[IDENTIFICATION]
         names = configuration.identification.models
         jobs = [
             replace(job, profile=False)
@@ -95,7 +96,7 @@ def summary(errors: pd.DataFrame) -> pd.DataFrame:
     """Median and worst error over the seeds beside what the thesis prints, columns as the page's table."""
     rows = []
     for (name, model, record), part in errors.groupby(["configuration", "model", "record"], sort=False):
-        printed = thesis.printed_errors(str(name), study.IDENTIFICATION, study.TRUTH)
+        printed = thesis.printed_errors(str(name), IDENTIFICATION, TRUTH)
         here = printed[(printed["model"] == model) & (printed["record"] == record)]["rms_velocity_m_s"]
         median, worst = part["rms_velocity_m_s"].median(), part["rms_velocity_m_s"].max()
         bar = float(here.iloc[0]) if len(here) else float("nan")
