@@ -12,9 +12,8 @@ from typing import Annotated, Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from data_synth.settings import check_settings
 from data_synth.ships.motion import planar_motion, sample_times
-from models.quantity import InvalidInput, Quantity, non_negative, positive
+from models.quantity import InvalidInput, Quantity, check_quantities, non_negative, positive
 from models.trace import Floats, Trace
 
 _BAND = (0.25, 5.0)  # of the peak frequency: all but 0.2 % of a Bretschneider sea's variance
@@ -120,7 +119,7 @@ class RandomSea:
     surge_ratio: Annotated[float, non_negative("r_s", "1")] = 1.0
 
     def __post_init__(self) -> None:
-        check_settings(self)
+        check_quantities(self)
         if self.spectrum not in ("bretschneider", "jonswap"):
             raise InvalidInput(
                 f"RandomSea.spectrum must be one of bretschneider, jonswap, but it is {self.spectrum!r}."

@@ -1,24 +1,8 @@
-"""Checking the settings of an input: as `models.quantity.check_quantities`, tuples value by value."""
+"""Checks between the values of an input's settings; each value against its bounds is `models.quantity`'s."""
 
 from typing import Any
 
-from models.quantity import InvalidInput, quantities
-
-
-def check_settings(instance: Any) -> None:
-    """Raise `InvalidInput` for the first annotated value outside its bounds (``None`` is left alone)."""
-    for name, quantity in quantities(type(instance)).items():
-        value = getattr(instance, name)
-        if value is None:
-            continue
-        several = isinstance(value, tuple)
-        for i, one in enumerate(value if several else (value,)):
-            if not quantity.holds(one):
-                place = f"{type(instance).__name__}.{name}{f'[{i}]' if several else ''}"
-                raise InvalidInput(
-                    f"{place} ({quantity.symbol}) must be {quantity.bound_text} {quantity.unit}, "
-                    f"but it is {one:g} {quantity.unit}."
-                )
+from models.quantity import InvalidInput
 
 
 def check_same_length(instance: Any, *names: str) -> None:

@@ -3,14 +3,13 @@
 import json
 import math
 import os
-import platform
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
 from ident.learning import Fit
+from ident.manifest import versions
 from models import reduced
 from models.delayed import FirstOrder, SecondOrder
 from models.drive import Start
@@ -21,9 +20,6 @@ from models.tow import Tow
 
 #: What the file calls itself, and the version of its layout.
 KIND, LAYOUT = "cable-ident fit", 1
-
-#: Packages whose versions a result depends on.
-PACKAGES = ("cable-ident", "numpy", "scipy", "numba")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -103,7 +99,7 @@ def write_fits(
         "start": start,
         "differentiator_s": window,
         "fits": [_as_mapping(fit) for fit in fits],
-        "versions": {"python": platform.python_version(), **{name: _version(name) for name in PACKAGES}},
+        "versions": versions(),
     }
     sibling = path.with_name(f".{path.name}.{os.getpid()}.partial")
     try:
@@ -214,10 +210,3 @@ def _number(value: Any, where: str) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
         raise InvalidInput(f"{where} must be a finite number, but it is {value!r}.")
     return float(value)
-
-
-def _version(name: str) -> str:
-    try:
-        return version(name)
-    except PackageNotFoundError:
-        return "not installed"

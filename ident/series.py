@@ -67,21 +67,6 @@ def measured_series(
     )
 
 
-def trace_table(ship: Trace, vehicle: Trace | None = None) -> pd.DataFrame:
-    """A record as its file has it: the columns of the trace contract that the traces fill."""
-    columns: dict[str, object] = {"time_s": ship.t}
-    columns |= {f"ship_{axis}_m": ship.position[:, i] for i, axis in enumerate("xyz")}
-    if vehicle is not None:
-        place = np.full((ship.t.size, 3), np.nan)
-        rows = np.searchsorted(ship.t, vehicle.t)
-        place[rows] = vehicle.position
-        columns |= {f"vehicle_{axis}_m": place[:, i] for i, axis in enumerate("xyz")}
-        columns["depth_m"] = -place[:, 2]
-        if vehicle.tension is not None:
-            columns["tension_top_N"], columns["tension_bottom_N"] = vehicle.tension.T
-    return pd.DataFrame(columns)
-
-
 def response_table(series: RecordSeries) -> pd.DataFrame:
     """The velocities of a record and of every model on it."""
     columns = {"time_s": series.t, "ship_velocity_m_s": series.ship_velocity}

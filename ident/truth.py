@@ -48,16 +48,27 @@ def identification_ship(configuration: Configuration, seed: int) -> Trace:
     return towed(configuration.tow, standard_input(configuration.input, stream(seed, INPUT)))
 
 
-def reference_run(configuration: Configuration, ship: Trace) -> spectral.SpectralResult:
-    """The spectral simulator with the configuration's tolerance or resolution."""
+def reference_run(
+    configuration: Configuration,
+    ship: Trace,
+    *,
+    tolerance: float | None = None,
+    stepper: spectral.Stepper = "implicit",
+    start: Start = "rest",
+    winch: spectral.Winch | None = None,
+) -> spectral.SpectralResult:
+    """The spectral simulator with the configuration's resolution, and its tolerance where none is given."""
     settings = configuration.spectral
     return spectral.simulate(
         configuration.tow,
         ship,
-        tolerance=settings.tolerance,
+        tolerance=settings.tolerance if tolerance is None else tolerance,
         harmonics=settings.harmonics,
         stations=settings.stations,
         step=settings.step,
+        stepper=stepper,
+        start=start,
+        winch=winch,
     )
 
 

@@ -74,11 +74,18 @@ def quantities(cls: type) -> Mapping[str, Quantity]:
 
 
 def check_quantities(instance: Any) -> None:
-    """Raise `InvalidInput` for the first annotated field outside its bounds (``None`` is left alone)."""
+    """Raise `InvalidInput` for the first annotated field outside its bounds, of a tuple for its first such value.
+
+    ``None`` is left alone.
+    """
     for name, quantity in quantities(type(instance)).items():
         value = getattr(instance, name)
-        if value is not None and not quantity.holds(value):
-            raise InvalidInput(
-                f"{type(instance).__name__}.{name} ({quantity.symbol}) must be {quantity.bound_text} "
-                f"{quantity.unit}, but it is {value:g} {quantity.unit}."
-            )
+        if value is None:
+            continue
+        several = isinstance(value, tuple)
+        for i, one in enumerate(value if several else (value,)):
+            if not quantity.holds(one):
+                raise InvalidInput(
+                    f"{type(instance).__name__}.{name}{f'[{i}]' if several else ''} ({quantity.symbol}) must be "
+                    f"{quantity.bound_text} {quantity.unit}, but it is {one:g} {quantity.unit}."
+                )

@@ -1,4 +1,4 @@
-"""Writing a trace file that reads back to the same bits."""
+"""Writing a trace file."""
 
 import math
 import os
@@ -12,8 +12,13 @@ from models.quantity import InvalidInput
 from models.trace import Floats
 
 
-def write_record(record: Record, path: str | Path) -> None:
+def write_record(record: Record, path: str | Path, *, digits: int | None = None) -> None:
     """Write a record as a trace file, whole or not at all.
+
+    Parameters
+    ----------
+    digits
+        Significant digits; without them the file reads back to the same bits.
 
     Raises
     ------
@@ -33,7 +38,8 @@ def write_record(record: Record, path: str | Path) -> None:
         header += TENSION
         columns += [*record.tension.T]
     rows = np.column_stack(columns).tolist()
-    lines = [",".join(header), *(",".join(repr(x) if math.isfinite(x) else "" for x in row) for row in rows), ""]
+    write = repr if digits is None else f"{{:.{digits}g}}".format
+    lines = [",".join(header), *(",".join(write(x) if math.isfinite(x) else "" for x in row) for row in rows), ""]
     try:
         _replace(path, "\n".join(lines))
     except OSError as error:

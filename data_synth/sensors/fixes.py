@@ -6,8 +6,7 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import NDArray
 
-from data_synth.settings import check_settings
-from models.quantity import InvalidInput, Quantity, non_negative, positive
+from models.quantity import InvalidInput, Quantity, check_quantities, non_negative, positive
 from models.trace import Floats, Trace
 
 _SAME_TIME = 1e-6  # s; multiples of a step differ in their last digit
@@ -29,7 +28,7 @@ class SensorModel:
     window: Annotated[float, positive("T_w", "s")] = 90.0
 
     def __post_init__(self) -> None:
-        check_settings(self)
+        check_quantities(self)
 
 
 def measure(vehicle: Trace, model: SensorModel, rng: np.random.Generator) -> Trace:

@@ -5,9 +5,9 @@ from typing import Annotated
 
 import numpy as np
 
-from data_synth.settings import check_increasing, check_same_length, check_settings
+from data_synth.settings import check_increasing, check_same_length
 from data_synth.ships.motion import planar_motion, sample_times
-from models.quantity import InvalidInput, Quantity, non_negative, positive
+from models.quantity import InvalidInput, Quantity, check_quantities, non_negative, positive
 from models.trace import Floats, Trace
 
 Duration = Annotated[float, positive("T", "s")]
@@ -33,7 +33,7 @@ class Sinusoids:
     heave_phases: Phases = ()
 
     def __post_init__(self) -> None:
-        check_settings(self)
+        check_quantities(self)
         for way in ("surge", "heave"):
             given = [f"{way}_amplitudes", f"{way}_omegas"]
             if getattr(self, f"{way}_phases"):
@@ -51,7 +51,7 @@ class Ramps:
     speeds: Speeds = (0.0, 0.4, 0.4, -0.2, -0.2, 0.0)
 
     def __post_init__(self) -> None:
-        check_settings(self)
+        check_quantities(self)
         check_same_length(self, "times", "speeds")
         check_increasing(self, "times")
         if not self.times:
@@ -69,7 +69,7 @@ class FirstOrder:
     time_constants: tuple[Annotated[float, positive("T_1", "s")], ...] = (60.0, 60.0, 60.0)
 
     def __post_init__(self) -> None:
-        check_settings(self)
+        check_quantities(self)
         check_same_length(self, "times", "speeds", "time_constants")
         check_increasing(self, "times")
 
@@ -84,7 +84,7 @@ class Step:
     start: Annotated[float, non_negative("t_0", "s")] = 0.0
 
     def __post_init__(self) -> None:
-        check_settings(self)
+        check_quantities(self)
 
 
 def sinusoids(settings: Sinusoids) -> Trace:

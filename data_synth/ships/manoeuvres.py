@@ -11,10 +11,10 @@ from typing import Annotated
 
 import numpy as np
 
-from data_synth.settings import check_increasing, check_same_length, check_settings
+from data_synth.settings import check_increasing, check_same_length
 from data_synth.ships.forcing import Duration, Sample, Speeds, Times
 from data_synth.ships.motion import planar_motion, sample_times
-from models.quantity import InvalidInput, Quantity, non_negative, positive
+from models.quantity import InvalidInput, Quantity, check_quantities, non_negative, positive
 from models.trace import Floats, Trace
 
 # Time [s] and speed [m/s] of each order.
@@ -45,7 +45,7 @@ class StartsAndStops:
     rise: Annotated[float, positive("T_r", "s")] = 60.0
 
     def __post_init__(self) -> None:
-        check_settings(self)
+        check_quantities(self)
         if not (self.speeds and self.runs and self.pauses):
             raise InvalidInput("StartsAndStops needs at least one speed, one run and one pause.")
         if min(*self.runs, *self.pauses) < self.rise:
@@ -66,7 +66,7 @@ class SharpTransients:
     rise: Annotated[float, positive("T_r", "s")] = 20.0
 
     def __post_init__(self) -> None:
-        check_settings(self)
+        check_quantities(self)
         check_same_length(self, "times", "speeds")
         check_increasing(self, "times")
         if len(self.times) > 1 and min(np.diff(self.times)) < self.rise:
@@ -93,7 +93,7 @@ class FewSinusoids:
     cycles: tuple[Annotated[int, Quantity("N", "1", lower=1)], ...] = (2, 1, 2, 1)
 
     def __post_init__(self) -> None:
-        check_settings(self)
+        check_quantities(self)
         check_same_length(self, "amplitudes", "periods", "cycles")
         if not self.periods:
             raise InvalidInput("FewSinusoids needs at least one amplitude and period.")

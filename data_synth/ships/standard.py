@@ -5,9 +5,8 @@ from typing import Annotated
 
 import numpy as np
 
-from data_synth.settings import check_settings
 from data_synth.ships.motion import planar_motion, sample_times
-from models.quantity import InvalidInput, Quantity, non_negative, positive
+from models.quantity import InvalidInput, Quantity, check_quantities, non_negative, positive
 from models.trace import Trace
 
 
@@ -29,7 +28,7 @@ class StandardInput:
     max_speed: Annotated[float, positive("v_max", "m/s")] = 0.5
 
     def __post_init__(self) -> None:
-        check_settings(self)
+        check_quantities(self)
         if not self.biases:
             raise InvalidInput("StandardInput.biases needs at least one value; give [0.0] for none.")
         nyquist = np.pi / self.sample

@@ -1,7 +1,7 @@
 """Recorded tows: fit the first part of each, score the rest, beside predictors without any physics (part of T 5.1)."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -19,6 +19,7 @@ from ident.recorded import RecordedCase, distinct, recorded_case
 from ident.scores import Row, baseline_row, model_row, parameters_table, score, scores_table
 from ident.series import measured_series
 from ident.studies.fit import held_delay
+from ident.terminal import Progress
 from models import reduced
 from models.drive import Start
 from models.reduced import Response
@@ -29,8 +30,6 @@ from reports.tow_page import TowMaterial, TowRecord, write_tow_page
 #: Parameters are searched within this factor of the description's. Velocity alone cannot tell a vehicle that lags
 #: from one that drifts away, and on these records it prefers the latter: farther out lies no cable at all.
 _WITHIN = 10.0
-
-Progress = Callable[[str, float], None]
 
 _USED = ("", "water", "cable", "vehicle", "towfish", "tow", "current", "identification")
 

@@ -1,6 +1,6 @@
 """Fits of reduced models to records from files."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -9,12 +9,11 @@ from ident.fit_files import write_fits
 from ident.learning import Fit, Job, fit_many
 from ident.places import new_file
 from ident.recorded import distinct, recorded_case
+from ident.terminal import Progress
 from models import reduced
 from models.drive import Start
 from models.reduced import ReducedModel
 from models.statics import static_shape
-
-Progress = Callable[[str, float], None]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,7 +1,7 @@
 """The committed sample pages: a run of every built-in configuration, the step study, and the spread over seeds."""
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -17,11 +17,10 @@ from ident.run_records import IDENTIFICATION, TRUTH, prepare_records
 from ident.scores import model_row, scores_table
 from ident.studies import run as study
 from ident.studies.step import step
+from ident.terminal import Progress
 from models.statics import static_shape
 from reports.files import write_json, write_table
 from reports.markdown import Page
-
-Progress = Callable[[str, float], None]
 
 NAMES = ("mangus-740", "autec-1200", "mangus-2500")
 STEP_NAME = "mangus-2500"

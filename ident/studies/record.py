@@ -14,8 +14,7 @@ from ident.places import new_file
 from ident.sections import INPUTS
 from ident.settings import Winch, WinchDepth
 from ident.studies.simulate import describe
-from ident.truth import INPUT, fixes, stream, towed, verification
-from models import spectral
+from ident.truth import INPUT, fixes, reference_run, stream, towed, verification
 from models.quantity import InvalidInput
 from models.spectral import DepthWinch, Payout
 from models.trace import Trace
@@ -58,16 +57,7 @@ def record(
         else:
             kinds = [kind] if Path(kind).is_file() else kind.split("+")
             ship, winch = _motion(configuration, kinds, duration, seed)
-            settings = configuration.spectral
-            result = spectral.simulate(
-                configuration.tow,
-                ship,
-                tolerance=settings.tolerance,
-                harmonics=settings.harmonics,
-                stations=settings.stations,
-                step=settings.step,
-                winch=winch,
-            )
+            result = reference_run(configuration, ship, winch=winch)
             vehicle, words = result.vehicle, describe(result)
         if sensor:
             vehicle = fixes(configuration, vehicle, seed)

@@ -2,12 +2,13 @@
 
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import pandas as pd
 
+from data_synth.records import join, write_record
 from ident.baselines import RIGID, rigid
 from ident.cases import Case
 from ident.configuration import Configuration
@@ -16,13 +17,11 @@ from ident.places import new_folder
 from ident.run_material import run_material
 from ident.run_records import CURRENT, IDENTIFICATION, MEASURED, TRUTH, Records, prepare_records
 from ident.scores import baseline_row, model_row, scores_table, simulation_seconds_per_hour
-from ident.series import response_table, trace_table
+from ident.series import response_table
 from ident.studies import bode
 from ident.studies.fit import held_delay
-from ident.truth import (
-    SEARCH,
-    stream,
-)
+from ident.terminal import Progress
+from ident.truth import SEARCH, stream
 from models import reduced
 from models.quantity import NumericalFailure
 from models.reduced import Response
@@ -30,7 +29,8 @@ from models.statics import StaticShape, static_shape
 from reports.files import write_json, write_parameters, write_scores, write_traces
 from reports.run_page import write_run_page
 
-Progress = Callable[[str, float], None]
+#: Significant digits of the traces in a run's folder.
+_TRACE_DIGITS = 9
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,16 +74,15 @@ def run(
         write_scores(folder / "scores-current.csv", scores[scores["record"] == CURRENT])
         write_parameters(folder / "parameters.csv", material.parameters)
         check = records.check
-        write_traces(
-            folder / "traces",
-            {
-                IDENTIFICATION: trace_table(records.ship, records.run.vehicle),
-                TRUTH: trace_table(check.ship, check.truth),
-                MEASURED: trace_table(check.ship, records.fixes),
-                CURRENT: trace_table(check.ship, check.in_current),
-                **{f"{series.record}-responses": response_table(series) for series in material.records},
-            },
-        )
+        traces = folder / "traces"
+        write_traces(traces, {f"{series.record}-responses": response_table(series) for series in material.records})
+        for name, ship, vehicle in (
+            (IDENTIFICATION, records.ship, records.run.vehicle),
+            (TRUTH, check.ship, check.truth),
+            (MEASURED, check.ship, records.fixes),
+            (CURRENT, check.ship, check.in_current),
+        ):
+            write_record(join(name, ship, vehicle), traces / f"{name}.csv", digits=_TRACE_DIGITS)
         write_json(folder / "manifest.json", {**material.manifest, "seconds": round(time.perf_counter() - began, 2)})
         progress("done", 1.0)
     return RunResult(folder=out, table=summary(kept))

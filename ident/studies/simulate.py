@@ -7,6 +7,7 @@ import numpy as np
 from data_synth.records import Record, planar, read_record, write_record
 from ident.configuration import Configuration
 from ident.places import new_file
+from ident.truth import reference_run
 from models import spectral
 from models.drive import Start
 from models.quantity import InvalidInput
@@ -47,17 +48,7 @@ def simulate(
                 f"{ship}: the spectral simulator is planar, but the ship leaves the vertical plane of its track by "
                 f"{plane.off_plane:.3g} m ({extent:.3g} m along it); give a straight track."
             )
-        settings = configuration.spectral
-        result = spectral.simulate(
-            configuration.tow,
-            plane.record.ship,
-            tolerance=settings.tolerance if tolerance is None else tolerance,
-            harmonics=settings.harmonics,
-            stations=settings.stations,
-            step=settings.step,
-            stepper=stepper,
-            start=start,
-        )
+        result = reference_run(configuration, plane.record.ship, tolerance=tolerance, stepper=stepper, start=start)
         vehicle = plane.on_map(result.vehicle)
         written = Record(
             name=configuration.name,

@@ -1,6 +1,5 @@
 """The step study of T 4.1: how delay and response depend on cable length and vehicle weight."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -13,6 +12,7 @@ from ident import scene, thesis
 from ident.configuration import Configuration
 from ident.manifest import manifest
 from ident.places import new_folder
+from ident.terminal import Progress
 from ident.truth import INPUT, reference_run, stream
 from models.quantity import InvalidInput
 from models.statics import midpoint_travel_time, static_shape, travel_time
@@ -22,8 +22,6 @@ from models.vehicle import Towfish
 from reports.figures.steps import StepResponse
 from reports.files import write_json, write_table
 from reports.step_page import StepMaterial, write_step_page
-
-Progress = Callable[[str, float], None]
 
 #: How long a response is followed, how finely, and what counts as arrived.
 _DURATION, _SAMPLE, _ARRIVED = 200.0, 0.5, 0.02

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.quantity import InvalidInput, NumericalFailure
-from models.spectral.basis import Fields, default_stations, prepare
+from models.spectral.basis import Fields, prepare
 from models.spectral.explicit import march_explicit
 from models.spectral.implicit import march
 from models.spectral.system import BUDGET, DONE, NOT_FINITE, SLACK
@@ -295,6 +295,3 @@ def _fail(status: int, where: Floats, counts: NDArray[np.int64], tow: Tow) -> No
         f"The spectral simulator's step does not converge at t = {time:.2f} s (vehicle velocity); a smaller step, a "
         "smoother ship record or the implicit stepper may help."
     )
-
-
-__all__ = ["STEPPERS", "SpectralResult", "default_stations", "first_harmonics", "initial_speed", "simulate"]

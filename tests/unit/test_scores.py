@@ -13,36 +13,22 @@ import pytest
 
 from ident import baselines
 from ident.cases import Case, case_from_truth
+from ident.configuration import load
 from ident.drag_tables import drag_over_spring_table, total_drag_table
 from ident.fit_files import read_fits, write_fits
 from ident.learning import Fit, fit
 from ident.linear import frequency_response, to_state_space
 from ident.scores import baseline_row, model_row, parameters_table, score, scores_table, simulation_seconds_per_hour
 from models import reduced
-from models.cable import Cable
 from models.delayed import FirstOrder
 from models.quantity import InvalidInput
 from models.reduced import Response
 from models.statics import static_shape
-from models.tow import Tow
 from models.trace import Trace
-from models.vehicle import Vehicle
 
 T = np.arange(0.0, 1201.0, 2.0)
 SHIP = Trace.along_x(T, 5000.0 - 22.0 * np.cos(0.011 * T) - 4.0 * np.cos(0.037 * T + 1.0))
-TOW = Tow(
-    cable=Cable.from_material(
-        length=1200.0,
-        diameter=0.0173,
-        density=4400.0,
-        young_modulus=6.2e10,
-        water_density=1025.0,
-        added_mass=0.24,
-        normal_drag_coefficient=1.6,
-        tangential_drag_coefficient=0.08,
-    ),
-    vehicle=Vehicle(weight_in_water=19170.0, mass=2240.0, added_mass=45.0, area=0.56, drag_coefficient=0.4),
-)
+TOW = load("autec-1200").tow
 SHAPE = static_shape(TOW)
 
 
