@@ -18,6 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from models.current import Current
 from models.quantity import GRAVITY, InvalidInput, NumericalFailure
 from models.tow import Tow
 from models.vehicle import Towfish, Vehicle
@@ -77,7 +78,7 @@ def static_shape(tow: Tow, *, stations: int = 240) -> StaticShape:
     Raises
     ------
     InvalidInput
-        Fewer than 2 segments, or a towfish without a stable pitch angle.
+        Fewer than 2 segments, a current across X, or a towfish without a stable pitch angle.
     SlackCable
         The tension falls to zero below the tow point.
     NumericalFailure
@@ -89,6 +90,8 @@ def static_shape(tow: Tow, *, stations: int = 240) -> StaticShape:
     """
     if stations < 2:
         raise InvalidInput(f"A static shape needs at least 2 segments, but {stations} was given.")
+    if tow.current is not None:
+        _check_in_plane(tow.current)
     depth = tow.cable.length
     previous: tuple[float, float] | None = None
     for _ in range(_DEPTH_ITERATIONS):
@@ -106,6 +109,15 @@ def static_shape(tow: Tow, *, stations: int = 240) -> StaticShape:
         f"The static shape does not settle: after {_DEPTH_ITERATIONS} iterations the vehicle's depth of "
         f"{depth:.3f} m still misses its own shape by {miss:.3g} m. The current may allow more than one shape."
     )
+
+
+def _check_in_plane(current: Current) -> None:
+    if not current.planar:
+        i = int(np.abs(current.velocity[:, 1]).argmax())
+        raise InvalidInput(
+            f"The tow stays in the plane of X and Z, but at {current.depth[i]:g} m the current has "
+            f"{current.velocity[i, 1]:.3g} m/s across it. Give directions of 0 or pi, or simulate with link-joint."
+        )
 
 
 def travel_time(tow: Tow, shape: StaticShape) -> float:

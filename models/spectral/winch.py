@@ -8,29 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.kernels import kernel
+from models.payout import Payout, freeze_table
 from models.quantity import InvalidInput, check_quantities, non_negative, positive
 
 Floats = NDArray[np.float64]
 
 #: Largest payout or haul as a share of the cable, where the sines about one static shape still hold.
 LARGEST_SHARE = 0.05
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Payout:
-    """Open loop: cable paid out [m] against time [s], linear between the points, positive out.
-
-    The drum follows the table with its corners rounded over a second, and starts from rest: a table that rises at its
-    very start loses a quarter of a second of its first rate.
-    """
-
-    t: Floats
-    length: Floats
-
-    def __post_init__(self) -> None:
-        _freeze(self, "length")
-        if self.t.size < 2:
-            raise InvalidInput("A payout needs at least 2 times, but has 1.")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -51,7 +35,7 @@ class DepthWinch:
 
     def __post_init__(self) -> None:
         check_quantities(self)
-        _freeze(self, "change")
+        freeze_table(self, "change")
 
 
 Winch = Payout | DepthWinch
@@ -135,15 +119,3 @@ def _table(times: Floats, values: Floats, t: float) -> float:
     share = min(max((t - times[k]) / (times[k + 1] - times[k]), 0.0), 1.0)
     value: float = values[k] + share * (values[k + 1] - values[k])
     return value
-
-
-def _freeze(winch: Payout | DepthWinch, name: str) -> None:
-    """Check times against values and make both read-only."""
-    t, value = np.array(winch.t, dtype=float), np.array(getattr(winch, name), dtype=float)
-    if t.ndim != 1 or t.shape != value.shape or t.size < 1:
-        raise InvalidInput(f"A winch needs one {name} for each time, but got {value.size} for {t.size} times.")
-    if not (np.isfinite(t).all() and np.isfinite(value).all()) or np.any(np.diff(t) <= 0.0):
-        raise InvalidInput(f"A winch needs finite, strictly increasing times and finite values of {name}.")
-    for field, array in (("t", t), (name, value)):
-        array.setflags(write=False)
-        object.__setattr__(winch, field, array)

@@ -1,0 +1,76 @@
+"""Gauss's principle itself: accelerations and multipliers of the chain in a given state, O(N).
+
+W's x'' = a + M^-1/2 (A M^-1/2)^+ (b - A a) with full row rank is x'' = a + M^-1 A'(A M^-1 A')^-1 (b - A a). The matrix
+A M^-1 A' couples a link with its neighbours only, also when the added mass makes M a 3 x 3 block a node, so that node
+by node elimination from the free ends solves it. The multipliers are the tensions of the rigid links; an elastic link
+has the tension of its stretch instead.
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.kernels import kernel
+from models.link_joint.chain import Chain
+from models.link_joint.stage import Work, _eliminate, assemble, substitute, work_for
+
+Floats = NDArray[np.float64]
+
+
+def accelerations(
+    chain: Chain, x: Floats, v: Floats, tension: Floats, ship_acceleration: Floats
+) -> tuple[Floats, Floats]:
+    """Accelerations (m + 1, 3) [m/s2], the ship's given one last, and tensions (m,) [N].
+
+    Parameters
+    ----------
+    x, v
+        (m + 1, 3) [m], [m/s], the ship's node last.
+    tension
+        (m,) [N], used for elastic links.
+    ship_acceleration
+        (3,) [m/s2].
+    """
+    nodes = x.shape[0]
+    a, T, work = np.zeros((nodes, 3)), np.array(tension), work_for(nodes)
+    a[-1] = ship_acceleration
+    _solve(chain, nodes - 1, np.array(x), np.array(v), T, a, work)
+    return a, T
+
+
+@kernel
+def _solve(c: Chain, n: int, x: Floats, v: Floats, T: Floats, a: Floats, w: Work) -> None:
+    for i in range(n):
+        if c.compliance[i] == 0.0:
+            T[i] = 0.0
+        else:
+            T[i] = max(0.0, T[i])
+    vh, dV, dT = v.copy(), np.zeros((n + 1, 3)), np.zeros(n)
+    # Counted from the velocities themselves a stage has no acceleration: what is out of balance is all force.
+    assemble(c, n, 1.0, vh, x, v, T, w)
+    for i in range(n + 1):
+        for j in range(9):
+            w.K[i, j], w.L[i, j], w.B[i, j] = w.M[i, j], 0.0, 0.0
+        for j in range(3):
+            w.R[i, j] = 0.0
+    for i in range(n):
+        p = c.parent[i]
+        rx, ry, rz = x[i, 0] - x[p, 0], x[i, 1] - x[p, 1], x[i, 2] - x[p, 2]
+        size = math.sqrt(rx * rx + ry * ry + rz * rz)
+        dx, dy, dz = v[i, 0] - v[p, 0], v[i, 1] - v[p, 1], v[i, 2] - v[p, 2]
+        along = (rx * dx + ry * dy + rz * dz) / size
+        # The first row of b: the ship's acceleration has a plus sign.
+        closing = (dx * dx + dy * dy + dz * dz - along * along) / size
+        if p == n:
+            closing -= (rx * a[n, 0] + ry * a[n, 1] + rz * a[n, 2]) / size
+        _eliminate(
+            i, p, closing, 0.0, 1.0, c.compliance[i] == 0.0, c.held[i], p == n, 0.0,
+            w.K, w.F, w.R, w.inverse, w.e, w.k, w.G, w.L, w.B, w.t, w.v, w.tau0, w.scale, w.rho,
+        )  # fmt: skip
+    substitute(c, n, w, dV, dT)
+    for i in range(n):
+        for j in range(3):
+            a[i, j] = dV[i, j]
+        if c.compliance[i] == 0.0:
+            T[i] = dT[i]

@@ -1,0 +1,322 @@
+"""The march of the chain in time: TR-BDF2 with error control, payout, slack events and the energy account.
+
+A step h has two stages of the same size g = gamma h/2, the trapezoidal rule to t + gamma h and the second-order
+backward formula to t + h, gamma = 2 - sqrt(2): second order and L-stable.
+The error estimate is that of the embedded third-order formula, passed through the stage's own matrix so that axial
+waves which the step rightly steps over do not count.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.kernels import kernel
+from models.link_joint.chain import Chain
+from models.link_joint.energy import energy_of, power_of
+from models.link_joint.stage import Work, reduce, solve_stage, substitute
+from models.link_joint.track import Track, first_row, hermite, note_slack, pull_on_ends, write_rows
+from models.link_joint.winding import change_of_links, merge, split
+
+Floats = NDArray[np.float64]
+
+GAMMA = 2.0 - math.sqrt(2.0)
+_D = 0.5 * GAMMA
+_W = 0.25 * math.sqrt(2.0)
+#: Weights of the embedded error: TR-BDF2 less the third-order formula through its stages.
+_E0, _E1, _E2 = _W - (1.0 - _W) / 3.0, _W - (3.0 * _W + 1.0) / 3.0, _D - _D / 3.0
+#: Third-order weights, for the account of energy.
+_B0, _B1, _B2 = (1.0 - _W) / 3.0, (3.0 * _W + 1.0) / 3.0, _D / 3.0
+
+#: Longest step of the error control, and the shortest before a step that is not solved is given up [s].
+LONGEST, SHORTEST = 40.0, 1e-7
+#: Local error that a step with slack links may have [m/s], and the shortest step that error alone asks for, over the
+#: time a stretch takes along a link: links that fall slack and snap taut would else ask for ever shorter steps.
+SLACK_ERROR, PATIENCE = 0.02, 0.05
+
+#: Largest payout or haul in a step, over the top links' length.
+_REELED = 0.2
+
+DONE, STUCK, NOT_FINITE, BUDGET_SPENT, EVENTS_FULL = range(5)
+
+
+class Curve(NamedTuple):
+    """A piecewise cubic: times (k + 1,), coefficients (4, k, d) of falling powers, as scipy's."""
+
+    t: Floats
+    c: Floats
+
+
+class State(NamedTuple):
+    """x, v, a (3, m + 1, 3) and T (3, m) at the begin, the middle point and the end of a step, changed in place."""
+
+    x: Floats
+    v: Floats
+    a: Floats
+    T: Floats
+
+
+class Settings(NamedTuple):
+    """`step` above zero fixes the step; otherwise `tolerance` [m/s] and `first` [s] steer it."""
+
+    tolerance: float
+    step: float
+    first: float
+    budget: int
+    nominal: float  # unstretched length of the top links [m]
+
+
+class Outcome(NamedTuple):
+    """How a march ended: code, time, link, quantity; steps taken and rejected, Newton iterations, drift, energies."""
+
+    code: int
+    t: float
+    link: int
+    quantity: float
+    steps: int
+    rejected: int
+    iterations: int
+    drift: float
+    unexplained: float  # change of energy less work while all links are taut [J]
+    snapped: float  # the same while links are slack or fall taut, below zero where impacts swallow energy [J]
+    turnover: float  # absolute work, the scale of the two [J]
+    nodes: int  # moving nodes at the end
+
+
+@kernel
+def curve_at(curve: Curve, t: float, at: int, value: Floats, rate: Floats, second: Floats) -> int:
+    """Value, rate and second derivative (d,) at t, searched from interval `at` on; returns the interval."""
+    last = curve.t.size - 2
+    while at < last and t >= curve.t[at + 1]:
+        at += 1
+    while at > 0 and t < curve.t[at]:
+        at -= 1
+    s = t - curve.t[at]
+    for j in range(value.size):
+        c0, c1, c2, c3 = curve.c[0, at, j], curve.c[1, at, j], curve.c[2, at, j], curve.c[3, at, j]
+        value[j] = ((c0 * s + c1) * s + c2) * s + c3
+        rate[j] = (3.0 * c0 * s + 2.0 * c1) * s + c2
+        second[j] = 6.0 * c0 * s + 2.0 * c1
+    return at
+
+
+@kernel
+def _ship_strays(ship: Curve, at: int, t: float, h: float, n: int, x: Floats, v: Floats) -> float:
+    """How far the ship's motion inside a step is from the cubic through its ends, over the step [m/s]."""
+    p, rate, second = np.empty(3), np.empty(3), np.empty(3)
+    worst = 0.0
+    for k in range(1, 6):
+        s = k / 6.0
+        at = curve_at(ship, t + s * h, at, p, rate, second)
+        for j in range(3):
+            worst = max(worst, abs(p[j] - hermite(s, h, x[0, n, j], v[0, n, j], x[2, n, j], v[2, n, j])))
+    return worst / h
+
+
+@kernel
+def _local_error(c: Chain, n: int, h: float, s: State, w: Work, dV: Floats, dT: Floats) -> tuple[float, int]:
+    """Error of a step [m/s] and the node it is largest at: the velocities' filtered, the positions' over the step."""
+    v, a, M, R, F = s.v, s.a, w.M, w.R, w.F
+    inverse, e, B, t, kept, tau0, scale, rho = w.inverse, w.e, w.B, w.t, w.v, w.tau0, w.scale, w.rho
+    over = h / (_D * h)
+    for i in range(n):
+        rho[i] = 0.0
+        for k in range(3):
+            total = 0.0
+            for j in range(3):
+                total += M[i, 3 * k + j] * (_E0 * a[0, i, j] + _E1 * a[1, i, j] + _E2 * a[2, i, j])
+            F[i, k], R[i, k] = total * over, 0.0
+    for i in range(n):
+        reduce(i, c.parent[i], c.parent[i] == n, 0.0, F, R, inverse, e, B, t, kept, tau0, scale, rho)
+    substitute(c, n, w, dV, dT)
+    worst, node = 0.0, 0
+    for i in range(n):
+        for j in range(3):
+            here = max(abs(dV[i, j]), abs(_E0 * v[0, i, j] + _E1 * v[1, i, j] + _E2 * v[2, i, j]))
+            if not here <= worst:
+                worst, node = here, i
+    return worst, node
+
+
+@kernel
+def _set_stage(stage: int, n: int, h: float, s: State, xh: Floats, vh: Floats) -> None:
+    """What a stage starts from, and its guess of velocities and tensions."""
+    x, v, a, T = s.x, s.v, s.a, s.T
+    g = _D * h
+    for i in range(n):
+        if stage == 1:
+            T[1, i] = T[0, i]
+        else:
+            T[2, i] = T[0, i] + (T[1, i] - T[0, i]) / GAMMA
+        for j in range(3):
+            if stage == 1:
+                # The trapezoidal rule to t + gamma h.
+                xh[i, j] = x[0, i, j] + g * v[0, i, j]
+                vh[i, j] = v[0, i, j] + g * a[0, i, j]
+                v[1, i, j] = v[0, i, j] + GAMMA * h * a[0, i, j]
+            else:
+                # The backward formula to t + h, guessed with the acceleration carried on.
+                xh[i, j] = x[0, i, j] + _W * h * (v[0, i, j] + v[1, i, j])
+                vh[i, j] = v[0, i, j] + _W * h * (a[0, i, j] + a[1, i, j])
+                bend = 0.5 * (1.0 / GAMMA - 1.0) * (a[1, i, j] - a[0, i, j])
+                v[2, i, j] = v[1, i, j] + (1.0 - GAMMA) * h * (a[1, i, j] + bend)
+
+
+@kernel
+def march(c: Chain, ship: Curve, payout: Curve, n: int, s: State, settings: Settings, track: Track, w: Work) -> Outcome:
+    """March the chain over the output times, from the first point of `s`; s, c and track change in place."""
+    m = s.x.shape[1]
+    xh, vh, dV, dT = np.zeros((m, 3)), np.zeros((m, 3)), np.zeros((m, 3)), np.zeros(m)
+    paid, rates, spare, top = np.zeros(1), np.zeros((3, 1)), np.zeros(1), np.zeros(3)
+    x, v, a, T = s.x, s.v, s.a, s.T
+    t, end, row, at, at_pay = track.t[0], track.t[-1], 1, 0, 0
+    winding, fixed = payout.t.size > 0, settings.step > 0.0
+    base = c.length[n - 1]
+    if winding:
+        at_pay = curve_at(payout, t, 0, paid, rates[0], spare)
+        base -= paid[0]
+    h = settings.step if fixed else settings.first
+    steps, rejected, iterations = 0, 0, 0
+    drift, unexplained, snapped, turnover = 0.0, 0.0, 0.0, 0.0
+    floor, accuracy = PATIENCE * _stretch_time(c, n), 1e-3 * settings.tolerance
+    energy0 = energy_of(c, n, x[0], v[0], T[0])
+    power0, _ = power_of(c, n, x[0], v[0], a[0], T[0], w)
+    pull_on_ends(c, n, track, 0, x[0], v[0], a[0], T[0], w.t, w.size)
+    first_row(track, n, x[0], v[0])
+    code, link, quantity = DONE, 0, 0.0
+    while row < track.t.size:
+        if steps + rejected >= settings.budget:
+            code, quantity = BUDGET_SPENT, h
+            break
+        if fixed:
+            h = settings.step
+        # A step that would leave a sliver before the end takes it along or halves it.
+        left = end - t
+        if h > left or (left - h) < 1e-9 * max(1.0, abs(end)):
+            h = left
+        elif not fixed and h > 0.5 * left:
+            h = 0.5 * left
+        if winding:
+            # The top link grows or shrinks by no more than a share of itself in a step.
+            at_pay = curve_at(payout, t, at_pay, paid, rates[0], spare)
+            here = paid[0]
+            at_pay = curve_at(payout, t + h, at_pay, paid, rates[0], spare)
+            while abs(paid[0] - here) > _REELED * settings.nominal and not fixed:
+                h *= 0.5
+                at_pay = curve_at(payout, t + h, at_pay, paid, rates[0], spare)
+        g = _D * h
+        used = 0
+        for stage in range(1, 3):
+            to = t + (GAMMA * h if stage == 1 else h)
+            at = curve_at(ship, to, at, x[stage, n], v[stage, n], a[stage, n])
+            if winding:
+                at_pay = curve_at(payout, to, at_pay, paid, rates[stage], spare)
+                top[stage] = base + paid[0]
+                c.length[n - 1], w.reel[0] = top[stage], rates[stage, 0]
+            _set_stage(stage, n, h, s, xh, vh)
+            used, link, quantity = solve_stage(c, n, g, xh, vh, x[stage], v[stage], T[stage], w, dV, dT, accuracy)
+            if used < 0:
+                break
+            iterations += used
+            for i in range(n):
+                for j in range(3):
+                    a[stage, i, j] = (v[stage, i, j] - vh[i, j]) / g
+        if used < 0:
+            rejected += 1
+            h *= 0.25
+            if fixed or h < SHORTEST:
+                code = STUCK if quantity < 1e6 else NOT_FINITE
+                break
+            continue
+        loose = False
+        for i in range(n):
+            loose = loose or T[0, i] <= 0.0 or T[1, i] <= 0.0 or T[2, i] <= 0.0
+        error = 1.0
+        if not fixed:
+            worst, node = _local_error(c, n, h, s, w, dV, dT)
+            error = worst / (max(settings.tolerance, SLACK_ERROR) if loose else settings.tolerance)
+            error = max(error, _ship_strays(ship, at, t, h, n, x, v) / settings.tolerance)
+            if not np.isfinite(error):
+                code, link, quantity = NOT_FINITE, node, worst
+                break
+            if error > 1.0 and h > floor:
+                rejected += 1
+                h = max(floor, h * max(0.2, 0.9 * error ** (-1.0 / 3.0)))
+                continue
+        if winding:
+            c.length[n - 1], w.reel[0] = top[1], rates[1, 0]
+        power_g, drag_g = power_of(c, n, x[1], v[1], a[1], T[1], w)
+        pull_on_ends(c, n, track, 1, x[1], v[1], a[1], T[1], w.t, w.size)
+        if winding:
+            c.length[n - 1], w.reel[0] = top[2], rates[2, 0]
+        power1, drag1 = power_of(c, n, x[2], v[2], a[2], T[2], w)
+        energy1 = energy_of(c, n, x[2], v[2], T[2])
+        missing = energy1 - energy0 - h * (_B0 * power0 + _B1 * power_g + _B2 * power1)
+        if loose:
+            snapped += missing
+        else:
+            unexplained += missing
+        turnover += h * (_B1 * (abs(power_g - drag_g) + abs(drag_g)) + (1.0 - _B1) * (abs(power1 - drag1) + abs(drag1)))
+        energy0, power0 = energy1, power1
+        drift = max(drift, _drift(c, n, x[2], v[2], T[2], w.reel[0]))
+        pull_on_ends(c, n, track, 2, x[2], v[2], a[2], T[2], w.t, w.size)
+        if not note_slack(c, n, track, t + h, T):
+            code = EVENTS_FULL
+            break
+        row = write_rows(track, row, n, t, h, GAMMA, x, v)
+        for part in range(track.ends.size):
+            for j in range(2):
+                track.pull[0, part, j] = track.pull[2, part, j]
+        for i in range(n + 1):
+            for j in range(3):
+                x[0, i, j], v[0, i, j], a[0, i, j] = x[2, i, j], v[2, i, j], a[2, i, j]
+        for i in range(n):
+            T[0, i] = T[2, i]
+        t += h
+        steps += 1
+        changed = change_of_links(c, n, m, settings.nominal) if winding else 0
+        if changed != 0:
+            if changed > 0:
+                split(c, n, x[0], v[0], a[0], T[0], settings.nominal, w.reel[0])
+            else:
+                merge(c, n, x[0], v[0], a[0], T[0], w.reel[0])
+            n += changed
+            base = c.length[n - 1] - paid[0]
+            energy0 = energy_of(c, n, x[0], v[0], T[0])
+            power0, _ = power_of(c, n, x[0], v[0], a[0], T[0], w)
+        if not fixed:
+            h = min(LONGEST, max(floor, h * min(3.0, 0.9 * (error + 1e-12) ** (-1.0 / 3.0))))
+    return Outcome(code, t, link, quantity, steps, rejected, iterations, drift, unexplained, snapped, turnover, n)
+
+
+@kernel
+def _drift(c: Chain, n: int, X: Floats, V: Floats, T: Floats, reel: float) -> float:
+    """Largest closure error of a taut link over its length."""
+    worst = 0.0
+    for i in range(n):
+        if T[i] <= 0.0:
+            continue
+        p = c.parent[i]
+        rx, ry, rz = X[i, 0] - X[p, 0], X[i, 1] - X[p, 1], X[i, 2] - X[p, 2]
+        size = math.sqrt(rx * rx + ry * ry + rz * rz)
+        wanted = 1.0
+        if c.compliance[i] > 0.0:
+            depth = -0.5 * (X[i, 2] + X[p, 2])
+            pressure = (1.0 - 2.0 * c.poisson[i]) * c.specific_weight * depth * c.area[i]
+            wanted += c.compliance[i] * (T[i] - pressure)
+            if c.damping[i] > 0.0:
+                dx, dy, dz = V[i, 0] - V[p, 0], V[i, 1] - V[p, 1], V[i, 2] - V[p, 2]
+                rate = (rx * dx + ry * dy + rz * dz) / size - (reel if p == n else 0.0)
+                wanted -= c.damping[i] * rate / c.length[i]
+        worst = max(worst, abs(size / c.length[i] - wanted))
+    return worst
+
+
+@kernel
+def _stretch_time(c: Chain, n: int) -> float:
+    """Shortest time that a stretch takes along a link [s]; of a rigid link that of a stiff steel one."""
+    shortest = np.inf
+    for i in range(n):
+        shortest = min(shortest, c.length[i] * math.sqrt(c.mass[i] * max(c.compliance[i], 1e-9)))
+    return shortest
