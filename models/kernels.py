@@ -54,3 +54,9 @@ def fast_kernel(function: _F) -> _F:
     flags = {"contract", "reassoc", "nsz"}
     compiled: Any = numba.njit(cache=True, nogil=True, error_model="numpy", fastmath=flags)(function)
     return cast(_F, compiled)
+
+
+def inline_kernel(function: _F) -> _F:
+    """`kernel` written into its callers: for the parts of an inner loop that take many arrays."""
+    compiled: Any = numba.njit(cache=True, nogil=True, error_model="numpy", inline="always")(function)
+    return cast(_F, compiled)

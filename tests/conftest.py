@@ -1,8 +1,12 @@
-"""The cables that many tests share: the built-in configurations, and H Table II with its pitching towfish."""
+"""What many tests share: the built-in configurations, H Table II with its towfish, and the continuum solutions."""
 
+import importlib.util
 import math
+import sys
 from collections.abc import Callable
 from functools import cache
+from pathlib import Path
+from types import ModuleType
 
 import pytest
 
@@ -16,6 +20,17 @@ from models.vehicle import Towfish
 def configurations() -> Callable[[str], Tow]:
     """The tow of a built-in configuration, by name."""
     return cache(lambda name: load(name).tow)
+
+
+@pytest.fixture(scope="session")
+def continuum() -> ModuleType:
+    """The module of continuum solutions; tests are no package, so it is loaded from its file."""
+    spec = importlib.util.spec_from_file_location("continuum", Path(__file__).parent / "oracle" / "continuum.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = sys.modules["continuum"] = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
 
 
 @pytest.fixture(scope="session")

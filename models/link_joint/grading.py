@@ -18,7 +18,7 @@ from models.towed_system import TowedSystem
 Floats = NDArray[np.float64]
 
 #: Links of the first part that curvature is read from.
-_READ = 80
+_READ = 60
 #: Curvature that counts as none, as a turn over the whole part [rad], and the even share in what is shared out.
 _STRAIGHT, _EVEN = 0.05, 1.0
 

@@ -140,7 +140,7 @@ def _local_error(c: Chain, n: int, h: float, s: State, w: Work, dV: Floats, dT: 
 
 
 @kernel
-def _set_stage(stage: int, n: int, h: float, s: State, xh: Floats, vh: Floats) -> None:
+def _set_stage(stage: int, n: int, h: float, s: State, jerk: Floats, xh: Floats, vh: Floats) -> None:
     """What a stage starts from, and its guess of velocities and tensions."""
     x, v, a, T = s.x, s.v, s.a, s.T
     g = _D * h
@@ -154,7 +154,7 @@ def _set_stage(stage: int, n: int, h: float, s: State, xh: Floats, vh: Floats) -
                 # The trapezoidal rule to t + gamma h.
                 xh[i, j] = x[0, i, j] + g * v[0, i, j]
                 vh[i, j] = v[0, i, j] + g * a[0, i, j]
-                v[1, i, j] = v[0, i, j] + GAMMA * h * a[0, i, j]
+                v[1, i, j] = v[0, i, j] + GAMMA * h * (a[0, i, j] + 0.5 * GAMMA * h * jerk[i, j])
             else:
                 # The backward formula to t + h, guessed with the acceleration carried on.
                 xh[i, j] = x[0, i, j] + _W * h * (v[0, i, j] + v[1, i, j])
@@ -168,6 +168,7 @@ def march(c: Chain, ship: Curve, payout: Curve, n: int, s: State, settings: Sett
     """March the chain over the output times, from the first point of `s`; s, c and track change in place."""
     m = s.x.shape[1]
     xh, vh, dV, dT = np.zeros((m, 3)), np.zeros((m, 3)), np.zeros((m, 3)), np.zeros(m)
+    jerk = np.zeros((m, 3))
     paid, rates, spare, top = np.zeros(1), np.zeros((3, 1)), np.zeros(1), np.zeros(3)
     x, v, a, T = s.x, s.v, s.a, s.T
     t, end, row, at, at_pay = track.t[0], track.t[-1], 1, 0, 0
@@ -179,7 +180,7 @@ def march(c: Chain, ship: Curve, payout: Curve, n: int, s: State, settings: Sett
     h = settings.step if fixed else settings.first
     steps, rejected, iterations = 0, 0, 0
     drift, unexplained, snapped, turnover = 0.0, 0.0, 0.0, 0.0
-    floor, accuracy = PATIENCE * _stretch_time(c, n), 1e-3 * settings.tolerance
+    floor, accuracy = PATIENCE * _stretch_time(c, n), 1e-2 * settings.tolerance
     energy0 = energy_of(c, n, x[0], v[0], T[0])
     power0, _ = power_of(c, n, x[0], v[0], a[0], T[0], w)
     pull_on_ends(c, n, track, 0, x[0], v[0], a[0], T[0], w.t, w.size)
@@ -214,7 +215,7 @@ def march(c: Chain, ship: Curve, payout: Curve, n: int, s: State, settings: Sett
                 at_pay = curve_at(payout, to, at_pay, paid, rates[stage], spare)
                 top[stage] = base + paid[0]
                 c.length[n - 1], w.reel[0] = top[stage], rates[stage, 0]
-            _set_stage(stage, n, h, s, xh, vh)
+            _set_stage(stage, n, h, s, jerk, xh, vh)
             used, link, quantity = solve_stage(c, n, g, xh, vh, x[stage], v[stage], T[stage], w, dV, dT, accuracy)
             if used < 0:
                 break
@@ -270,6 +271,7 @@ def march(c: Chain, ship: Curve, payout: Curve, n: int, s: State, settings: Sett
                 track.pull[0, part, j] = track.pull[2, part, j]
         for i in range(n + 1):
             for j in range(3):
+                jerk[i, j] = (a[2, i, j] - a[1, i, j]) / ((1.0 - GAMMA) * h)
                 x[0, i, j], v[0, i, j], a[0, i, j] = x[2, i, j], v[2, i, j], a[2, i, j]
         for i in range(n):
             T[0, i] = T[2, i]
@@ -282,6 +284,7 @@ def march(c: Chain, ship: Curve, payout: Curve, n: int, s: State, settings: Sett
             else:
                 merge(c, n, x[0], v[0], a[0], T[0], w.reel[0])
             n += changed
+            jerk[:] = 0.0
             base = c.length[n - 1] - paid[0]
             energy0 = energy_of(c, n, x[0], v[0], T[0])
             power0, _ = power_of(c, n, x[0], v[0], a[0], T[0], w)

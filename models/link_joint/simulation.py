@@ -137,7 +137,7 @@ def simulate(
         and quantity. With `links` left out also when the tolerance is not met.
     """
     _check(system, ship, links, tolerance, step, payout)
-    grading = Grading(system, _usual_velocity(ship))
+    grading = Grading(system, _usual_velocity(system, ship))
     snapshots = np.zeros(0) if shapes_at is None else np.asarray(shapes_at, dtype=float)
 
     def run(count: int, local: float, dt: float | None) -> LinkJointResult:
@@ -275,13 +275,13 @@ def _run(
     )
 
 
-def _usual_velocity(ship: Trace) -> tuple[float, float, float]:
-    """The ship's root mean square speed, in the direction it starts in [m/s]."""
-    rates = ship.spline(ship.t, 1)
-    speed = float(np.sqrt(np.mean(np.sum(rates[:, :2] ** 2, axis=1))))
-    size = float(np.hypot(rates[0, 0], rates[0, 1]))
-    x, y = (rates[0, 0] / size, rates[0, 1] / size) if size > 1e-6 else (1.0, 0.0)
-    return speed * float(x), speed * float(y), 0.0
+def _usual_velocity(system: TowedSystem, ship: Trace) -> tuple[float, float, float]:
+    """The ship's root mean square speed through the water at the surface, in the direction it starts in [m/s]."""
+    water = np.zeros(2) if system.current is None else system.current.velocity_at(0.0)
+    rates = ship.spline(ship.t, 1)[:, :2] - water
+    speed, size = float(np.sqrt(np.mean(np.sum(rates**2, axis=1)))), float(np.hypot(*rates[0]))
+    x, y = water + (rates[0] * (speed / size) if size > 1e-6 else np.array([speed, 0.0]))
+    return float(x), float(y), 0.0
 
 
 def _judge(out: kernel.Outcome, imbalance: float, layout: Layout, system: TowedSystem) -> None:

@@ -45,7 +45,7 @@ BUDGET = 25
 #: Largest turn of a link in one iteration [rad].
 _LARGEST_TURN = 0.7
 #: A link's stretch error that Newton's method may leave, over its length.
-_CLOSED = 1e-10
+_CLOSED = 2e-9
 
 
 class Work(NamedTuple):

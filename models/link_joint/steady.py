@@ -23,7 +23,7 @@ Floats = NDArray[np.float64]
 _BALANCED = 1e-9
 _ROUNDS = 400
 #: Least compliance of a link to a held node [1/N].
-_HELD = 1e-13
+_HELD = 1e-10
 #: Repetitions of a link's direction in the first guess.
 _TURNS = 4
 
@@ -111,31 +111,49 @@ def trailing(chain: Chain, n: int, velocity: tuple[float, float, float]) -> tupl
     the chain hung straight down.
     """
     x, T = np.zeros((n + 1, 3)), np.zeros(n)
-    for i in reversed(range(n)):
-        x[i, 2] = x[chain.parent[i], 2] - chain.length[i]
-    flow = np.tile(velocity, (n + 1, 1))
-    for i in range(n if chain.current_depth.size else 0):
-        flow[i, :2] -= current_at(chain.current_depth, chain.current_x, chain.current_y, x[i, 2])
-    pull, towards = np.zeros((n + 1, 3)), np.zeros((n, 3))
-    down = np.array([0.0, 0.0, -1.0])
-    for i in range(n):
-        u, p = flow[i], int(chain.parent[i])
-        if chain.has_body[i]:
-            pull[i] += chain.body_weight[i] * down - chain.body_drag[i] * u * math.sqrt(float(u @ u))
-        kn, kt, half = chain.normal_drag[i], chain.tangential_drag[i], 0.5 * chain.length[i]
-        # A free end has nothing but its own load to go by.
-        t = pull[i] / (np.linalg.norm(pull[i]) or 1.0) if pull[i].any() else down
-        for _ in range(_TURNS):
-            own = half * (np.array(end_force(chain.law, kn, kt, *u, *t)) + chain.weight[i] * down)
-            total = pull[i] + own
-            size = float(np.linalg.norm(total)) or 1.0
-            t = t + total / size
-            t /= float(np.linalg.norm(t)) or 1.0
-        towards[i], T[i] = t, size
-        pull[p] += pull[i] + 2.0 * own
-    for i in reversed(range(n)):
-        x[i] = x[chain.parent[i]] + chain.length[i] * (1.0 + chain.compliance[i] * T[i]) * towards[i]
+    _trail(chain, n, *velocity, x, T)
     return x, T
+
+
+@kernel
+def _trail(c: Chain, n: int, vx: float, vy: float, vz: float, x: Floats, T: Floats) -> None:
+    pull, towards, own = np.zeros((n + 1, 3)), np.zeros((n, 3)), np.zeros(3)
+    for j in range(n):
+        i = n - 1 - j
+        x[i, 2] = x[c.parent[i], 2] - c.length[i]
+    for i in range(n):
+        p, half = c.parent[i], 0.5 * c.length[i]
+        cx, cy = current_at(c.current_depth, c.current_x, c.current_y, x[i, 2])
+        ux, uy, uz = vx - cx, vy - cy, vz
+        if c.has_body[i]:
+            speed = math.sqrt(ux * ux + uy * uy + uz * uz)
+            pull[i, 0] -= c.body_drag[i, 0] * speed * ux
+            pull[i, 1] -= c.body_drag[i, 1] * speed * uy
+            pull[i, 2] -= c.body_drag[i, 2] * speed * uz + c.body_weight[i]
+        tx, ty, tz = pull[i, 0], pull[i, 1], pull[i, 2]
+        size = math.sqrt(tx * tx + ty * ty + tz * tz)
+        if size > 0.0:
+            tx, ty, tz = tx / size, ty / size, tz / size
+        else:
+            # A free end has nothing but its own load to go by.
+            tx, ty, tz = 0.0, 0.0, -1.0
+        for _ in range(_TURNS):
+            fx, fy, fz = end_force(c.law, c.normal_drag[i], c.tangential_drag[i], ux, uy, uz, tx, ty, tz)
+            own[0], own[1], own[2] = half * fx, half * fy, half * (fz - c.weight[i])
+            wx, wy, wz = pull[i, 0] + own[0], pull[i, 1] + own[1], pull[i, 2] + own[2]
+            T[i] = math.sqrt(wx * wx + wy * wy + wz * wz)
+            over = 1.0 / (T[i] + 1e-300)
+            tx, ty, tz = tx + wx * over, ty + wy * over, tz + wz * over
+            over = 1.0 / (math.sqrt(tx * tx + ty * ty + tz * tz) + 1e-300)
+            tx, ty, tz = tx * over, ty * over, tz * over
+        towards[i, 0], towards[i, 1], towards[i, 2] = tx, ty, tz
+        for k in range(3):
+            pull[p, k] += pull[i, k] + 2.0 * own[k]
+    for j in range(n):
+        i = n - 1 - j
+        stretched = c.length[i] * (1.0 + c.compliance[i] * T[i])
+        for k in range(3):
+            x[i, k] = x[c.parent[i], k] + stretched * towards[i, k]
 
 
 def settle(chain: Chain, n: int, x: Floats, v: Floats, T: Floats) -> float:
@@ -164,7 +182,7 @@ def _settle(c: Chain, n: int, x: Floats, v: Floats, T: Floats, w: Work, rounds: 
     m = n + 1
     xh, X, V, dV = np.zeros((m, 3)), np.zeros((m, 3)), np.zeros((m, 3)), np.zeros((m, 3))
     now, dT = np.zeros(n), np.zeros(n)
-    g = 5.0
+    g = 10.0
     residual, node = np.inf, 0
     for done in range(1, rounds + 1):
         for i in range(n):
@@ -199,5 +217,5 @@ def _settle(c: Chain, n: int, x: Floats, v: Floats, T: Floats, w: Work, rounds: 
             residual /= largest
             if residual <= _BALANCED:
                 return residual, node, done
-        g = min(1e7, g * (3.0 if used < 12 else 1.5))
+        g = min(1e7, g * (10.0 if used < 8 else 2.0))
     return residual, node, rounds

@@ -11,9 +11,10 @@ from scipy.integrate import solve_ivp
 from ident.configuration import load
 from ident.linear import to_state_space
 from ident.studies import bode
-from models import fine_chain, reduced
+from models import link_joint, reduced
 from models.statics import static_shape
 from models.tow import Tow
+from models.towed_system import TowedSystem
 from models.trace import Trace
 
 TOWS = ("mangus-740", "autec-1200")
@@ -49,18 +50,19 @@ def test_slow_motion_is_followed(name: str) -> None:
 
 
 def chain_response(tow: Tow, amplitude: float, omega: float) -> complex:
-    """The fundamental of the fine chain's vehicle, by the Fourier integral over one late period."""
+    """The fundamental of the link-joint chain's vehicle, by the Fourier integral over one late period."""
     period = 2.0 * math.pi / omega
     t = np.linspace(0.0, 8.0 * period, 8 * 60 + 1)
     ease = -np.expm1(-((t / period) ** 3))
-    run = fine_chain.simulate(tow, Trace.along_x(t, amplitude * ease * np.sin(omega * t)), step=period / 400).vehicle
+    ship = Trace.along_x(t, amplitude * ease * np.sin(omega * t))
+    run = link_joint.simulate(TowedSystem.from_tow(tow), ship, links=40, tolerance=1e-4, companion=False).vehicle
     last = slice(7 * 60, 8 * 60)
     return complex(2j * np.mean(run.position[last, 0] * np.exp(-1j * omega * t[last])) / amplitude)
 
 
 @pytest.mark.parametrize("name", TOWS)
 @pytest.mark.parametrize(("amplitude", "omega"), [(25.0, 0.012), (50.0, 0.02), (25.0, 0.035)])
-def test_reference_response_is_the_fine_chains(name: str, amplitude: float, omega: float) -> None:
+def test_reference_response_is_the_chains(name: str, amplitude: float, omega: float) -> None:
     tow = load(name).tow
     gain, phase = bode.reference_response(tow, amplitude, omega)
     other = chain_response(tow, amplitude, omega)
@@ -99,7 +101,7 @@ def test_linear_curves_are_those_of_python_control(name: str) -> None:
     np.testing.assert_allclose(table["phase_deg"], np.degrees(phase), atol=1e-7)
 
 
-def test_quadratic_curves_depend_on_the_amplitude_and_meet_the_fine_chain() -> None:
+def test_quadratic_curves_depend_on_the_amplitude_and_meet_the_chain() -> None:
     """Harmonic balance against the time domain: the describing function lacks the third harmonic, a few percent."""
     tow = load("autec-1200").tow
     model = reduced.section("inertial-32-quadratic", tow, static_shape(tow))
