@@ -17,6 +17,12 @@ ShipInput: TypeAlias = (
     | ships.StartsAndStops
     | ships.SharpTransients
     | ships.FewSinusoids
+    | ships.StraightTow
+    | ships.FullTurn
+    | ships.UTurn
+    | ships.SpeedChanges
+    | ships.ZigZag
+    | ships.Waypoints
     | seas.RandomSea
 )
 
@@ -30,6 +36,12 @@ KINDS: Mapping[str, type[ShipInput]] = {
     "starts-and-stops": ships.StartsAndStops,
     "sharp-transients": ships.SharpTransients,
     "few-sinusoids": ships.FewSinusoids,
+    "straight": ships.StraightTow,
+    "full-turn": ships.FullTurn,
+    "u-turn": ships.UTurn,
+    "speed-changes": ships.SpeedChanges,
+    "zig-zag": ships.ZigZag,
+    "waypoints": ships.Waypoints,
     "sea": seas.RandomSea,
 }
 
@@ -45,6 +57,12 @@ _FIXED: Mapping[type, Callable[[Any], Trace]] = {
     ships.StartsAndStops: ships.starts_and_stops,
     ships.SharpTransients: ships.sharp_transients,
     ships.FewSinusoids: ships.few_sinusoids,
+    ships.StraightTow: ships.straight_tow,
+    ships.FullTurn: ships.full_turn,
+    ships.UTurn: ships.u_turn,
+    ships.SpeedChanges: ships.speed_changes,
+    ships.ZigZag: ships.zig_zag,
+    ships.Waypoints: ships.waypoints,
 }
 
 

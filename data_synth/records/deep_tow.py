@@ -6,21 +6,18 @@ and said in the record's notes; only rows of one instant are merged.
 """
 
 from collections.abc import Iterable
-from datetime import datetime
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from data_synth.records.record import Record
-from data_synth.records.ship_track import repaired_ship_track
+from data_synth.records.ship_track import FASTEST, HARDEST, repaired_ship_track
 from data_synth.records.table import Table
 from models.quantity import InvalidInput
 from models.trace import Floats, Trace
 
 #: Latitude of the survey for the depth formula [degrees].
 LATITUDE = -44.2
-#: Rules of the R2R programme for a believable ship track: speed [m/s], acceleration [m/s2].
-FASTEST, HARDEST = 8.7, 1.0
 #: A position unchanged for longer is frozen [s].
 FROZEN = 60.0
 
@@ -44,7 +41,7 @@ def deep_tow_record(table: Table) -> Record:
     InvalidInput
         A cell is not a number, a time is not one, or the ship's track has a long gap or a jump.
     """
-    times = _times(table)
+    times = table.instants("FinalTime")
     values = np.column_stack([table.numbers(name) for name in (*_SHIP, *_USBL, "Pres")])
     kept_rows, notes = _distinct_rows(table, times, values)
     t, first, group = np.unique(times[kept_rows], return_index=True, return_inverse=True)
@@ -86,22 +83,6 @@ def unesco_depth(pressure: ArrayLike, latitude: float) -> Floats:
     x = np.sin(np.radians(latitude)) ** 2
     gravity = 9.780318 * (1.0 + (5.2788e-3 + 2.36e-5 * x) * x) + 1.092e-6 * p
     return np.asarray((((-1.82e-15 * p + 2.279e-10) * p - 2.2512e-5) * p + 9.72659) * p / gravity, dtype=float)
-
-
-def _times(table: Table) -> Floats:
-    """(rows,) [s] since the first row's time."""
-    stamps = []
-    for i, cell in enumerate(table.cells("FinalTime")):
-        try:
-            stamps.append(datetime.fromisoformat(cell))
-        except ValueError:
-            raise InvalidInput(
-                f"{table.at(i)}, column FinalTime: a date and time is needed, but it holds {cell!r}."
-            ) from None
-    try:
-        return np.array([(stamp - stamps[0]).total_seconds() for stamp in stamps])
-    except TypeError:
-        raise InvalidInput(f"{table.path}, column FinalTime: some times have a zone and others do not.") from None
 
 
 def _distinct_rows(table: Table, times: Floats, values: Floats) -> tuple[NDArray[np.intp], list[str]]:

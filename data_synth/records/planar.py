@@ -71,6 +71,7 @@ def planar(record: Record) -> PlanarRecord:
             vehicle=vehicle,
             depth=record.depth,
             tension=record.tension,
+            bodies=tuple(_project(body, angle, origin)[0] for body in record.bodies),
             notes=record.notes,
             source=record.source,
         ),

@@ -12,6 +12,8 @@ from models.trace import Floats
 LONGEST_GAP = 60.0
 #: Fastest that a ship's position may move [m/s]; anything faster is a jump.
 FASTEST_SHIP = 15.0
+#: Rules of the R2R programme for a believable ship track: speed [m/s], acceleration [m/s2].
+FASTEST, HARDEST = 8.7, 1.0
 
 _GAP_STEPS = 3.0  # a time step longer than so many usual ones is a gap
 
@@ -76,18 +78,19 @@ def _notes(t: Floats, known: NDArray[np.intp], bridged: NDArray[np.intp], kept: 
     notes = []
     if bridged.size:
         longest = np.diff(t[known])[np.diff(known) > 1].max()
-        notes.append(f"{_count(bridged.size, 'missing ship position')} interpolated, longest gap {longest:g} s.")
+        notes.append(f"{counted(bridged.size, 'missing ship position')} interpolated, longest gap {longest:g} s.")
     steps = np.diff(t[kept])
     gaps = steps > _GAP_STEPS * np.median(steps)
     if gaps.any():
         notes.append(
-            f"{_count(int(gaps.sum()), 'gap')} in time bridged by the ship's spline, longest {steps[gaps].max():g} s."
+            f"{counted(int(gaps.sum()), 'gap')} in time bridged by the ship's spline, longest {steps[gaps].max():g} s."
         )
     dropped = t.size - (kept.stop - kept.start)
     if dropped:
-        notes.append(f"{_count(dropped, 'row')} before the first or after the last ship position left out.")
+        notes.append(f"{counted(dropped, 'row')} before the first or after the last ship position left out.")
     return tuple(notes)
 
 
-def _count(number: int, thing: str) -> str:
+def counted(number: int, thing: str) -> str:
+    """A number and its thing, in the plural where there are several."""
     return f"{number} {thing}{'' if number == 1 else 's'}"

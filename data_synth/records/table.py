@@ -3,6 +3,7 @@
 import csv
 import math
 from dataclasses import dataclass
+from datetime import datetime
 from pathlib import Path
 
 import numpy as np
@@ -39,6 +40,27 @@ class Table:
                 values[i] = self._number(cell, self.lines[i], column)
         return values
 
+    def instants(self, column: str) -> Floats:
+        """(rows,) [s] since the first row's date and time in a column.
+
+        Raises
+        ------
+        InvalidInput
+            A cell is no date and time, or some have a zone and others do not.
+        """
+        stamps = []
+        for i, cell in enumerate(self.cells(column)):
+            try:
+                stamps.append(datetime.fromisoformat(cell))
+            except ValueError:
+                raise InvalidInput(
+                    f"{self.at(i)}, column {column}: a date and time is needed, but it holds {cell!r}."
+                ) from None
+        try:
+            return np.array([(stamp - stamps[0]).total_seconds() for stamp in stamps])
+        except TypeError:
+            raise InvalidInput(f"{self.path}, column {column}: some times have a zone and others do not.") from None
+
     def _number(self, cell: str, line: int, column: str) -> float:
         try:
             value = float(cell) if "_" not in cell else math.nan
@@ -56,8 +78,10 @@ class Table:
         return f"{self.path}, line {self.lines[row]}"
 
 
-def read_table(path: Path) -> Table:
+def read_table(path: Path, *, row_names: bool = False) -> Table:
     """Read a file with a header line; blank lines are skipped, a byte order mark is dropped.
+
+    With `row_names` the rows may begin with a name that the header leaves out, as R writes them: the column ``row``.
 
     Raises
     ------
@@ -85,6 +109,8 @@ def read_table(path: Path) -> Table:
         raise InvalidInput(f"{path}: a CSV text file in UTF-8 is needed, but this is not text.")
     if len(lines) == 1:
         raise InvalidInput(f"{path}: rows are needed, but the file has only a header line.")
+    if row_names and len(lines[1][1]) == len(header) + 1:
+        header = ("row", *header)
     for line, row in lines[1:]:
         if len(row) != len(header):
             raise InvalidInput(f"{path}, line {line}: {len(header)} cells are needed, but it has {len(row)}.")

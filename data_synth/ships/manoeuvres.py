@@ -4,7 +4,6 @@ The records themselves are not published. Each manoeuvre is built from closed fo
 half a cosine, and whole periods of ``A (1 - cos om t)``, which start and end at rest.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import cycle
 from typing import Annotated
@@ -13,7 +12,7 @@ import numpy as np
 
 from data_synth.settings import check_increasing, check_same_length
 from data_synth.ships.forcing import Duration, Sample, Speeds, Times
-from data_synth.ships.motion import planar_motion, sample_times
+from data_synth.ships.motion import eased, planar_motion, sample_times
 from models.quantity import InvalidInput, Quantity, check_quantities, non_negative, positive
 from models.trace import Floats, Trace
 
@@ -108,13 +107,14 @@ def starts_and_stops(settings: StartsAndStops) -> Trace:
         orders += [now, now + run]
         levels += [speed, 0.0]
         now += run + pause
-    return _eased(sample_times(settings.duration, settings.sample), orders, levels, settings.rise)
+    t = sample_times(settings.duration, settings.sample)
+    return planar_motion(t, *eased(t, orders, levels, settings.rise))
 
 
 def sharp_transients(settings: SharpTransients) -> Trace:
     """Sharp transients and steady stretches, T 6.2 (1200 m)."""
     t = sample_times(settings.duration, settings.sample)
-    return _eased(t, settings.times, settings.speeds, settings.rise)
+    return planar_motion(t, *eased(t, settings.times, settings.speeds, settings.rise))
 
 
 def few_sinusoids(settings: FewSinusoids) -> Trace:
@@ -130,17 +130,6 @@ def few_sinusoids(settings: FewSinusoids) -> Trace:
         x += side * amplitude * (1.0 - np.cos(omega * since))
         v += side * amplitude * omega * np.sin(omega * since)
         now, side = now + count * period, -side
-    return planar_motion(t, x, v)
-
-
-def _eased(t: Floats, orders: Sequence[float], levels: Sequence[float], rise: float) -> Trace:
-    """From rest, a change to each level over `rise` along half a cosine."""
-    x, v = np.zeros_like(t), np.zeros_like(t)
-    for order, change in zip(orders, np.diff(levels, prepend=0.0), strict=True):
-        since = np.maximum(t - order, 0.0)
-        within = np.minimum(since, rise)
-        v += change * 0.5 * (1.0 - np.cos(np.pi * within / rise))
-        x += change * (0.5 * (within - rise / np.pi * np.sin(np.pi * within / rise)) + since - within)
     return planar_motion(t, x, v)
 
 

@@ -1,5 +1,7 @@
 """What every ship motion shares: its times, a trace with its exact velocity, and the sum of several."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from models.quantity import InvalidInput
@@ -40,6 +42,19 @@ def planar_motion(
     if heave is not None and heave_rate is not None:
         position[:, 2], velocity[:, 2] = heave, heave_rate
     return Trace(t=t, position=position, velocity=velocity)
+
+
+def eased(
+    t: Floats, orders: Sequence[float], levels: Sequence[float], rise: float, first: float = 0.0
+) -> tuple[Floats, Floats]:
+    """Distance [m] and speed [m/s], each (n,): `first`, then a change to each level over `rise` along half a cosine."""
+    x, v = first * t, np.full_like(t, first)
+    for order, change in zip(orders, np.diff(levels, prepend=first), strict=True):
+        since = np.maximum(t - order, 0.0)
+        within = np.minimum(since, rise)
+        v += change * 0.5 * (1.0 - np.cos(np.pi * within / rise))
+        x += change * (0.5 * (within - rise / np.pi * np.sin(np.pi * within / rise)) + since - within)
+    return x, v
 
 
 def superpose(first: Trace, *others: Trace) -> Trace:
