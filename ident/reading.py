@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
 from ident.schema import did_you_mean, keys_of, read, shown
-from ident.sections import SECTIONS, keys_for
+from ident.sections import SECTIONS, keys_for, without_number
 from models.quantity import InvalidInput
 
 S = TypeVar("S")
@@ -18,16 +18,18 @@ class ConfigurationFile:
 
     def __init__(self, text: str, source: str) -> None:
         self.source = source
-        tables = _tables(_parsed(text, source), source)
-        tables.setdefault("cable", {})
-        self.given = tuple(f"{section}.{key}".lstrip(".") for section, table in tables.items() for key in table)
-        self._values = {name: read(table, keys_for(name, table), self.place(name)) for name, table in tables.items()}
+        found = tables(text, source)
+        self.given = tuple(f"{section}.{key}".lstrip(".") for section, table in found.items() for key in table)
+        self._values = {name: read(table, keys_for(name, table), self.place(name)) for name, table in found.items()}
+        self.tails = tuple(name for name in found if without_number(name) == "tail")
 
     def __contains__(self, section: str) -> bool:
         return section in self._values
 
     def place(self, section: str) -> str:
         """File and section, for a message."""
+        if section.startswith("tail."):
+            return f"{self.source}: [{without_number(section)}] (tail {section.split('.')[1]})"
         return f"{self.source}: [{section}]" if section else f"{self.source}:"
 
     def values(self, section: str) -> Mapping[str, Any]:
@@ -66,20 +68,48 @@ def _parsed(text: str, source: str) -> Mapping[str, Any]:
         raise InvalidInput(f"{source} is not usable TOML: {error}.") from error
 
 
-def _tables(document: Mapping[str, Any], source: str) -> dict[str, Mapping[str, Any]]:
-    """Section name to table; keys above the first section under the empty name, ``[inputs.KIND]`` by its full name."""
-    tables: dict[str, Mapping[str, Any]] = {"": {k: v for k, v in document.items() if k in _HEADING}}
+def tables(text: str, source: str) -> dict[str, Mapping[str, Any]]:
+    """Section name to table, as given.
+
+    Keys above the first section are under the empty name, ``[inputs.KIND]`` is there by its full name, and the second
+    ``[[tail]]`` is ``tail.2`` with ``tail.2.cable`` and ``tail.2.body``.
+
+    Raises
+    ------
+    InvalidInput
+        Malformed TOML, or an unknown section.
+    """
+    document = _parsed(text, source)
+    found: dict[str, Mapping[str, Any]] = {"": {k: v for k, v in document.items() if k in _HEADING}}
     named = {k: v for k, v in document.items() if k not in _HEADING}
+    tails = _tails(named.pop("tail", []), source)
     kinds = named.pop("inputs", {})
     if not isinstance(kinds, Mapping):
         raise InvalidInput(f"{source}: inputs = {shown(kinds)} must be sections such as [inputs.ramps].")
     named |= {f"inputs.{kind}": table for kind, table in kinds.items()}
     for name, table in named.items():
-        if name not in SECTIONS:
+        if name not in SECTIONS or name.startswith("tail."):
             what = f"section [{name}]" if isinstance(table, Mapping) else f"key {name} = {shown(table)}"
             hint = did_you_mean(name, [*(each for each in SECTIONS if each), *_HEADING])
             raise InvalidInput(f"{source} has the unknown {what}{hint}")
         if not isinstance(table, Mapping):
             raise InvalidInput(f"{source}: {name} = {shown(table)} must be a section [{name}] with keys of its own.")
-        tables[name] = table
-    return tables
+        found[name] = table
+    found.setdefault("cable", {})
+    return found | tails
+
+
+def _tails(given: Any, source: str) -> dict[str, Mapping[str, Any]]:
+    """The numbered sections of every ``[[tail]]``; the cable's is there even if left out."""
+    if not (isinstance(given, list) and all(isinstance(each, Mapping) for each in given)):
+        raise InvalidInput(f"{source}: tail = {shown(given)} must be sections [[tail]], with two brackets.")
+    found: dict[str, Mapping[str, Any]] = {}
+    for number, tail in enumerate(given, start=1):
+        parts = {"cable": {}} | {name: tail[name] for name in ("cable", "body") if name in tail}
+        found[f"tail.{number}"] = {name: value for name, value in tail.items() if name not in parts}
+        for name, table in parts.items():
+            if not isinstance(table, Mapping):
+                place = f"{source}: {name} = {shown(table)} of tail {number}"
+                raise InvalidInput(f"{place} must be a section [tail.{name}] with keys of its own.")
+            found[f"tail.{number}.{name}"] = table
+    return found

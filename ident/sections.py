@@ -1,5 +1,6 @@
 """Which dataclass each section of a configuration file fills: the whole list of accepted keys."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import replace
 
@@ -10,6 +11,7 @@ from ident.settings import (
     CurrentProfile,
     Heading,
     IdentificationSettings,
+    LinkJointSettings,
     Material,
     ScoringSettings,
     SpectralSettings,
@@ -18,8 +20,10 @@ from ident.settings import (
     Winch,
     WinchDepth,
 )
+from models.body import Body
 from models.cable import Cable
 from models.tow import Tow
+from models.towed_system import Part
 from models.vehicle import Towfish, Vehicle
 
 #: A cable is given by one of these groups of fields, whole.
@@ -39,6 +43,12 @@ INPUTS: Mapping[str, type] = {
     "ramps": ships.Ramps,
     "first-order": ships.FirstOrder,
     "step": ships.Step,
+    "straight": ships.StraightTow,
+    "full-turn": ships.FullTurn,
+    "u-turn": ships.UTurn,
+    "speed-changes": ships.SpeedChanges,
+    "zig-zag": ships.ZigZag,
+    "waypoints": ships.Waypoints,
     "sea": seas.RandomSea,
     "winch": Winch,
     "winch-depth": WinchDepth,
@@ -59,6 +69,10 @@ SECTIONS: Mapping[str, tuple[Key, ...]] = {
     "towfish": keys_of(Towfish),
     "tow": keys_of(Tow, only=("speed",)),
     "current": keys_of(CurrentProfile),
+    "tail": keys_of(Part, only=("name", "after")),
+    "tail.cable": _cable_keys(),
+    "tail.body": keys_of(Body),
+    "link-joint": keys_of(LinkJointSettings),
     "spectral": keys_of(SpectralSettings),
     "input": (*keys_of(ships.StandardInput), *keys_of(ScoringSettings)),
     "verification": keys_of(VerificationSettings),
@@ -70,9 +84,14 @@ SECTIONS: Mapping[str, tuple[Key, ...]] = {
 }
 
 
+def without_number(section: str) -> str:
+    """The name in `SECTIONS` of a section as it is counted in a file: ``tail.cable`` for ``tail.2.cable``."""
+    return re.sub(r"^tail\.\d+", "tail", section)
+
+
 def keys_for(section: str, table: Mapping[str, object]) -> tuple[Key, ...]:
     """The keys of a section as it stands in a file: the kind of [verification] brings its manoeuvre's keys."""
     if section != "verification":
-        return SECTIONS[section]
+        return SECTIONS[without_number(section)]
     manoeuvre = MANOEUVRES.get(str(table.get("kind", VerificationSettings().kind)))
     return (*SECTIONS[section], *(keys_of(manoeuvre) if manoeuvre else ()))

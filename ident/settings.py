@@ -3,11 +3,15 @@
 Field name, symbol, unit, bounds and default stand here once; `ident.schema` makes the keys of the file from them.
 """
 
+import math
 from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
 from data_synth.settings import check_increasing, check_same_length
 from models.quantity import Quantity, non_negative, positive
+from models.towed_system import DragLaw, StrummingDamping
+
+_TURN = 2.0 * math.pi
 
 VerificationKind = Literal["starts-and-stops", "sharp-transients", "few-sinusoids"]
 
@@ -45,6 +49,21 @@ class SpectralSettings:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class LinkJointSettings:
+    """The three-dimensional chain: a tolerance and what follows from it unless given, and the drag of its cables.
+
+    `links` are those of the first part; the others have links of the same length.
+    """
+
+    links: Annotated[int | None, Quantity("n", "-", lower=4, upper=10_000)] = None
+    tolerance: Annotated[float, Quantity("eps", "m/s", lower=1e-9, upper=0.1)] = 1e-3
+    step: Annotated[float | None, positive("dt", "s")] = None
+    drag_law: DragLaw = "quadratic"
+    strumming: bool = False
+    strumming_damping: StrummingDamping = 0.005
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class ScoringSettings:
     """The window that is scored, the same for every model."""
 
@@ -53,11 +72,15 @@ class ScoringSettings:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class VerificationSettings:
-    """The truth that fitted models are verified on, made by a fine inertial chain with changed coefficients."""
+    """The truth that fitted models are verified on, made by the link-joint chain with changed coefficients.
+
+    `links` are those of the first part; `tolerance` steers the steps alone, and the report says what the error is.
+    """
 
     kind: VerificationKind = "sharp-transients"
     coefficient_change: Annotated[float, Quantity("c", "-", lower=0.0, upper=1.0, open_upper=True)] = 0.05
-    links: Annotated[int, Quantity("n", "-", lower=60, upper=2000)] = 60
+    links: Annotated[int, Quantity("n", "-", lower=8, upper=4096)] = 60
+    tolerance: Annotated[float, Quantity("eps", "m/s", lower=1e-9, upper=0.1)] = 5e-5
     current_speed: Annotated[float, Quantity("U_c", "m/s", lower=-3.0, upper=3.0)] = 0.05
 
 
@@ -98,10 +121,11 @@ class BodeSettings:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CurrentProfile:
-    """A current toward +X: speeds at increasing depths, straight lines between."""
+    """A current: speeds at increasing depths, straight lines between; toward +X unless directions are given."""
 
     depth: tuple[Annotated[float, non_negative("z", "m")], ...]
     speed: tuple[Annotated[float, Quantity("U", "m/s", lower=-5.0, upper=5.0)], ...]
+    direction: tuple[Annotated[float, Quantity("theta", "rad", lower=-_TURN, upper=_TURN)], ...] = (0.0,)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -124,16 +124,35 @@ def test_lists_and_texts_are_shown() -> None:
 
 
 @pytest.mark.parametrize("name", builtin_names())
-def test_every_guess_about_the_tow_is_marked(name: str) -> None:
+def test_every_guess_is_marked(name: str) -> None:
     own = load(name)
     table = scene.configuration_table(own)
-    system = [
-        key
-        for key in own.guesses
-        if key.partition(".")[0] in ("water", "cable", "vehicle", "towfish", "tow", "current")
-    ]
-    assert int(table["guess"].sum()) == len(system)
+    assert int(table["guess"].sum()) == len(own.guesses)
     assert ("guesses" in builtin_text(name)) == bool(own.guesses)
+
+
+def test_parts_behind_the_vehicle_are_listed_and_said_to_be_left_out() -> None:
+    own = load("multipart-2200-strumming")
+    rows = {(row["part"], row["setting"]): row for row in scene.configuration_table(own).to_dict("records")}
+    assert rows["tail.2", "name"]["value"] == "towed-body"
+    assert rows["tail.1.cable", "length"]["value"] == 200.0
+    assert rows["tail.1.body", "added mass heave"]["guess"]
+    missing = dict(scene.left_out(own))
+    assert "damping-unit, towed-body" in missing["parts behind the vehicle"]
+    assert "link-joint" in missing["strumming"]
+    beside = dict(scene.left_out(own, chain=True))
+    assert beside["parts behind the vehicle"].startswith("the models are identified without damping-unit, towed-body")
+    assert beside["strumming"] == "only the verification truth has it"
+    fish = configuration(BASE + TOWFISH)
+    assert "pitch of the vehicle in the verification truth" in dict(scene.left_out(fish, chain=True))
+    assert "pitch of the vehicle in the verification truth" not in dict(scene.left_out(fish))
+    assert "parts behind the vehicle" not in dict(scene.left_out(load("mangus-740")))
+
+
+def test_a_table_with_inputs_is_made() -> None:
+    text = 'guesses = ["inputs.step.speed_m_s"]\n' + BASE + POINT + "[inputs.step]\nspeed_m_s = 0.3\n"
+    table = scene.configuration_table(configuration(text))
+    assert list(table.loc[table["guess"], "part"]) == ["inputs.step"]
 
 
 def test_settings_that_no_study_reads_are_listed_with_the_reason() -> None:
