@@ -56,6 +56,11 @@ class Objective:
     best_at: Floats | None = None
     costs: list[float] = field(default_factory=list)
 
+    @property
+    def upper(self) -> Floats:
+        """(p,) upper ends of the search coordinates."""
+        return self.space.upper
+
     def residuals(self, u: Floats) -> Floats:
         """(m,) residuals at coordinates (p,), counted.
 

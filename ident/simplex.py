@@ -6,13 +6,12 @@ independent ones. Each restart spreads a fresh simplex about the best point so f
 """
 
 import math
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from scipy.optimize import minimize
 
 from ident.cases import Floats
-from ident.objective import Objective
 from models.quantity import NumericalFailure
 
 #: Relative gain of a restart below which the search has converged.
@@ -40,7 +39,31 @@ MANY = 10**9
 RISE = 0.01
 
 
-def search(objective: Objective, u: Floats, gains: list[float]) -> bool:
+class Cost(Protocol):
+    """What the search needs of a cost, such as `ident.objective.Objective`.
+
+    `best` and `best_at` are the lowest cost so far and where it was, `upper` (p,) ends the range of the coordinates.
+    """
+
+    @property
+    def best(self) -> float: ...
+
+    @property
+    def best_at(self) -> Floats | None: ...
+
+    @property
+    def upper(self) -> Floats: ...
+
+    def residuals(self, u: Floats) -> Floats:
+        """(m,) residuals at coordinates (p,)."""
+        ...
+
+    def __call__(self, u: Floats) -> float:
+        """The cost at coordinates (p,)."""
+        ...
+
+
+def search(objective: Cost, u: Floats, gains: list[float]) -> bool:
     """Minimise from u (p,); the best point is left in the objective, the gain of every restart in `gains`.
 
     Returns
@@ -65,7 +88,7 @@ def search(objective: Objective, u: Floats, gains: list[float]) -> bool:
     return objective.best <= EXACT
 
 
-def _descend(objective: Objective, u: Floats) -> None:
+def _descend(objective: Cost, u: Floats) -> None:
     """One run of SciPy's Nelder-Mead from a fresh simplex about u, in units of its edges."""
     edges = _edges(objective, u)
     p = u.size
@@ -83,7 +106,7 @@ def _descend(objective: Objective, u: Floats) -> None:
     minimize(cost, np.zeros(p), method="Nelder-Mead", options=options)
 
 
-def _edges(objective: Objective, u: Floats) -> Floats:
+def _edges(objective: Cost, u: Floats) -> Floats:
     """(p, p) columns: the edges of a fresh simplex at u, in search coordinates.
 
     Along each eigen-direction of J'J the edge points downhill and is as long as the Gauss-Newton step, at
@@ -94,7 +117,7 @@ def _edges(objective: Objective, u: Floats) -> Floats:
     J = np.empty((m, p))
     for j in range(p):
         moved = u.copy()
-        moved[j] += STEP if u[j] + STEP < objective.space.upper[j] else -STEP
+        moved[j] += STEP if u[j] + STEP < objective.upper[j] else -STEP
         try:
             J[:, j] = (objective.residuals(moved) - base) / (moved[j] - u[j])
         except NumericalFailure:
