@@ -58,5 +58,5 @@ def fast_kernel(function: _F) -> _F:
 
 def inline_kernel(function: _F) -> _F:
     """`kernel` written into its callers: for the parts of an inner loop that take many arrays."""
-    compiled: Any = numba.njit(cache=True, nogil=True, error_model="numpy", inline="always")(function)
+    compiled: Any = numba.njit(cache=True, nogil=True, error_model="numpy", forceinline=True)(function)
     return cast(_F, compiled)

@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.kernels import kernel
+from models.link_joint import columns as col
 from models.link_joint.chain import Chain
-from models.link_joint.forces import body_axes, current_at, directions, end_direction, end_force, end_velocity
+from models.link_joint.forces import FAR, NEAR, body_axes, current_at, directions, end_force, water_at
 from models.link_joint.stage import Work
 
 Floats = NDArray[np.float64]
@@ -56,23 +57,27 @@ def power_of(c: Chain, n: int, X: Floats, V: Floats, A: Floats, T: Floats, w: Wo
     parent, part, lengths, compliance, damping = c.parent, c.part, c.length, c.compliance, c.damping
     poisson, added, has_body, held, law = c.poisson, c.added_mass, c.has_body, c.held, c.law
     normal_drag, tangential_drag = c.normal_drag, c.tangential_drag
-    depths, current_x, current_y, t, sizes = c.current_depth, c.current_x, c.current_y, w.t, w.size
-    directions(parent, n, X, t, sizes)
+    depths, current_x, current_y, W, reel = c.current_depth, c.current_x, c.current_y, w.W, w.reel[0]
+    still = depths.size == 0
+    directions(part, parent, lengths, n, X, W)
     for i in range(n):
         p = parent[i]
         half = 0.5 * lengths[i]
-        tx, ty, tz = t[i, 0], t[i, 1], t[i, 2]
-        e = sizes[i] / lengths[i] - 1.0
+        tx, ty, tz = W[i, col.TANGENT], W[i, col.TANGENT + 1], W[i, col.TANGENT + 2]
+        e = W[i, col.SIZE] / lengths[i] - 1.0
         swell = 1.0 if compliance[i] == 0.0 or e < 0.0 else (1.0 + e) * (1.0 - poisson[i] * e)
         kn, kt = normal_drag[i] * half * swell, tangential_drag[i] * half * swell
         ma = added[i] * half
         for end in range(2):
-            q, o = (i, p) if end == 0 else (p, i)
+            q, o, at = (i, p, col.LOWER) if end == 0 else (p, i, col.UPPER)
             if q == n or held[q]:
                 continue
-            ex, ey, ez, _ = end_direction(part, lengths, n, i, end, t)
-            ux, uy, uz = end_velocity(depths, current_x, current_y, q, o, X, V)
-            fx, fy, fz = end_force(law, kn, kt, ux, uy, uz, ex, ey, ez)
+            ux, uy, uz = NEAR * V[q, 0] + FAR * V[o, 0], NEAR * V[q, 1] + FAR * V[o, 1], NEAR * V[q, 2] + FAR * V[o, 2]
+            if not still:
+                cx, cy = water_at(depths, current_x, current_y, X[q, 2], X[o, 2])
+                ux -= cx
+                uy -= cy
+            fx, fy, fz = end_force(law, kn, kt, ux, uy, uz, W[i, at], W[i, at + 1], W[i, at + 2])
             vx, vy, vz = V[q, 0], V[q, 1], V[q, 2]
             drag += fx * vx + fy * vy + fz * vz
             along = A[q, 0] * tx + A[q, 1] * ty + A[q, 2] * tz
@@ -90,13 +95,13 @@ def power_of(c: Chain, n: int, X: Floats, V: Floats, A: Floats, T: Floats, w: Wo
         if damping[i] > 0.0:
             rate = tx * (V[i, 0] - V[p, 0]) + ty * (V[i, 1] - V[p, 1]) + tz * (V[i, 2] - V[p, 2])
             if p == n:
-                rate -= w.reel[0]
+                rate -= reel
             other -= (T[i] - _elastic_part(c, i, p, X)) * rate
         if p == n:
             # The ship pulls its own end, and lets out cable under tension.
             other -= T[i] * (tx * V[n, 0] + ty * V[n, 1] + tz * V[n, 2])
-            if w.reel[0] != 0.0:
+            if reel != 0.0:
                 speed = V[i, 0] * V[i, 0] + V[i, 1] * V[i, 1] + V[i, 2] * V[i, 2]
                 entered = 0.5 * (0.5 * c.mass[i] * speed + c.weight[i] * X[i, 2])
-                other += w.reel[0] * (entered - T[i] * (1.0 + 0.5 * compliance[i] * T[i]))
+                other += reel * (entered - T[i] * (1.0 + 0.5 * compliance[i] * T[i]))
     return drag + other, drag

@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.kernels import inline_kernel, kernel
+from models.link_joint import columns as col
 from models.link_joint.chain import INCIDENCE
 
 Floats = NDArray[np.float64]
@@ -36,6 +37,7 @@ _VERTICAL = 0.02
 _SMALL = 1e-12
 #: Share of the nearer node's velocity at a third of a link.
 NEAR = 2.0 / 3.0
+FAR = 1.0 - NEAR
 _TINY = 1e-30
 
 
@@ -55,7 +57,7 @@ def current_at(depths: Floats, x: Floats, y: Floats, z: float) -> tuple[float, f
     return x[k - 1], y[k - 1]
 
 
-@kernel
+@inline_kernel
 def drag_law(law: int, kn: float, kt: float, un: float, ut: float) -> tuple[float, float, float, float, float, float]:
     """a, b and their derivatives by u_n and u_t, in the order (a, b, a_n, a_t, b_n, b_t).
 
@@ -75,7 +77,7 @@ def drag_law(law: int, kn: float, kt: float, un: float, ut: float) -> tuple[floa
     return kn * q * V, kn * q * V * ut, kn * by_n, kn * by_t, kn * ut * by_n, kn * (q * V + ut * by_t)
 
 
-@kernel
+@inline_kernel
 def end_force(
     law: int, kn: float, kt: float, ux: float, uy: float, uz: float, tx: float, ty: float, tz: float
 ) -> tuple[float, float, float]:
@@ -87,7 +89,7 @@ def end_force(
     return -(a * nx + b * tx), -(a * ny + b * ty), -(a * nz + b * tz)
 
 
-@kernel
+@inline_kernel
 def end_drag(
     law: int, kn: float, kt: float, ux: float, uy: float, uz: float, tx: float, ty: float, tz: float, size: float
 ) -> tuple[Three, Nine, Nine]:
@@ -146,50 +148,42 @@ def body_axes(surge: float, sway: float, tx: float, ty: float) -> tuple[float, f
 
 
 @kernel
-def directions(parent: Indices, n: int, X: Floats, t: Floats, size: Floats) -> None:
-    """Unit tangents t (m, 3) from the upper to the lower end, and lengths (m,) [m], of all links."""
+def directions(part: Indices, parent: Indices, length: Floats, n: int, X: Floats, W: Floats) -> None:
+    """Tangent and length of every link, and the tangents at a third of it from its lower and its upper end.
+
+    Into the columns TANGENT, SIZE, LOWER and UPPER of W; the fourth number of an end is the share of the link's own
+    tangent in it.
+    """
     for i in range(n):
         p = parent[i]
         rx, ry, rz = X[i, 0] - X[p, 0], X[i, 1] - X[p, 1], X[i, 2] - X[p, 2]
-        size[i] = math.sqrt(rx * rx + ry * ry + rz * rz) + _TINY
-        t[i, 0], t[i, 1], t[i, 2] = rx / size[i], ry / size[i], rz / size[i]
+        size = math.sqrt(rx * rx + ry * ry + rz * rz) + _TINY
+        W[i, col.SIZE] = size
+        W[i, col.TANGENT], W[i, col.TANGENT + 1], W[i, col.TANGENT + 2] = rx / size, ry / size, rz / size
+    for i in range(n):
+        below = i > 0 and part[i - 1] == part[i]
+        above = i + 1 < n and part[i + 1] == part[i]
+        to_below = length[i] / (3.0 * (length[i] + length[i - 1])) if below else 0.0
+        to_above = length[i] / (3.0 * (length[i] + length[i + 1])) if above else 0.0
+        for end in range(2):
+            # Where a part ends the turn goes on as it does at the link's other end.
+            lower = end == 0
+            if below if lower else above:
+                beside, share = (i - 1, to_below) if lower else (i + 1, to_above)
+            elif above if lower else below:
+                beside, share = (i + 1, -to_above) if lower else (i - 1, -to_below)
+            else:
+                beside, share = i, 0.0
+            own = 1.0 - share
+            x = own * W[i, col.TANGENT] + share * W[beside, col.TANGENT]
+            y = own * W[i, col.TANGENT + 1] + share * W[beside, col.TANGENT + 1]
+            z = own * W[i, col.TANGENT + 2] + share * W[beside, col.TANGENT + 2]
+            over = 1.0 / (math.sqrt(x * x + y * y + z * z) + _TINY)
+            at = col.LOWER if lower else col.UPPER
+            W[i, at], W[i, at + 1], W[i, at + 2], W[i, at + 3] = x * over, y * over, z * over, own
 
 
-@inline_kernel
-def end_direction(
-    part: Indices, length: Floats, n: int, i: int, end: int, t: Floats
-) -> tuple[float, float, float, float]:
-    """Tangent at a third of link i from its lower (0) or upper (1) end, and the share of the link's own in it."""
-    beside = i - 1 if end == 0 else i + 1
-    share = 0.0
-    if 0 <= beside < n and part[beside] == part[i]:
-        share = length[i] / (3.0 * (length[i] + length[beside]))
-    else:
-        # A part ends here: the turn goes on as it does at the link's other end.
-        beside = i + 1 if end == 0 else i - 1
-        if 0 <= beside < n and part[beside] == part[i]:
-            share = -length[i] / (3.0 * (length[i] + length[beside]))
-        else:
-            beside = i
-    own = 1.0 - share
-    x = own * t[i, 0] + share * t[beside, 0]
-    y = own * t[i, 1] + share * t[beside, 1]
-    z = own * t[i, 2] + share * t[beside, 2]
-    over = 1.0 / (math.sqrt(x * x + y * y + z * z) + _TINY)
-    return x * over, y * over, z * over, own
-
-
-@inline_kernel
-def end_velocity(
-    depths: Floats, x: Floats, y: Floats, near: int, far: int, X: Floats, V: Floats
-) -> tuple[float, float, float]:
-    """Velocity through the water at a third of a link from node `near` [m/s]."""
-    rest = 1.0 - NEAR
-    ux = NEAR * V[near, 0] + rest * V[far, 0]
-    uy = NEAR * V[near, 1] + rest * V[far, 1]
-    uz = NEAR * V[near, 2] + rest * V[far, 2]
-    if depths.size > 0:
-        cx, cy = current_at(depths, x, y, NEAR * X[near, 2] + rest * X[far, 2])
-        ux -= cx
-        uy -= cy
-    return ux, uy, uz
+@kernel
+def water_at(depths: Floats, x: Floats, y: Floats, near: float, far: float) -> tuple[float, float]:
+    """The water's velocity [m/s] at a third of a link whose ends are at the heights `near` and `far` [m]."""
+    return current_at(depths, x, y, NEAR * near + FAR * far)

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.kernels import kernel
+from models.link_joint import columns as col
 from models.link_joint.chain import Chain
 from models.link_joint.stage import Work, _eliminate, assemble, substitute, work_for
 
@@ -49,11 +50,12 @@ def _solve(c: Chain, n: int, x: Floats, v: Floats, T: Floats, a: Floats, w: Work
     vh, dV, dT = v.copy(), np.zeros((n + 1, 3)), np.zeros(n)
     # Counted from the velocities themselves a stage has no acceleration: what is out of balance is all force.
     assemble(c, n, 1.0, vh, x, v, T, w)
+    W = w.W
     for i in range(n + 1):
         for j in range(9):
-            w.K[i, j], w.L[i, j], w.B[i, j] = w.M[i, j], 0.0, 0.0
+            W[i, col.K + j], W[i, col.L + j], W[i, col.B + j] = W[i, col.M + j], 0.0, 0.0
         for j in range(3):
-            w.R[i, j] = 0.0
+            W[i, col.R + j] = 0.0
     for i in range(n):
         p = c.parent[i]
         rx, ry, rz = x[i, 0] - x[p, 0], x[i, 1] - x[p, 1], x[i, 2] - x[p, 2]
@@ -64,10 +66,7 @@ def _solve(c: Chain, n: int, x: Floats, v: Floats, T: Floats, a: Floats, w: Work
         closing = (dx * dx + dy * dy + dz * dz - along * along) / size
         if p == n:
             closing -= (rx * a[n, 0] + ry * a[n, 1] + rz * a[n, 2]) / size
-        _eliminate(
-            i, p, closing, 0.0, 1.0, c.compliance[i] == 0.0, c.held[i], p == n, 0.0,
-            w.K, w.F, w.R, w.inverse, w.e, w.k, w.G, w.L, w.B, w.t, w.v, w.tau0, w.scale, w.rho,
-        )  # fmt: skip
+        _eliminate(i, p, closing, 0.0, 1.0, c.compliance[i] == 0.0, c.held[i], p == n, 0.0, W)
     substitute(c, n, w, dV, dT)
     for i in range(n):
         for j in range(3):

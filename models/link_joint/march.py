@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.kernels import kernel
+from models.link_joint import columns as col
 from models.link_joint.chain import Chain
 from models.link_joint.energy import energy_of, power_of
 from models.link_joint.stage import Work, reduce, solve_stage, substitute
@@ -117,18 +118,17 @@ def _ship_strays(ship: Curve, at: int, t: float, h: float, n: int, x: Floats, v:
 @kernel
 def _local_error(c: Chain, n: int, h: float, s: State, w: Work, dV: Floats, dT: Floats) -> tuple[float, int]:
     """Error of a step [m/s] and the node it is largest at: the velocities' filtered, the positions' over the step."""
-    v, a, M, R, F = s.v, s.a, w.M, w.R, w.F
-    inverse, e, B, t, kept, tau0, scale, rho = w.inverse, w.e, w.B, w.t, w.v, w.tau0, w.scale, w.rho
+    v, a, W, parent = s.v, s.a, w.W, c.parent
     over = h / (_D * h)
     for i in range(n):
-        rho[i] = 0.0
+        W[i, col.RHO] = 0.0
         for k in range(3):
             total = 0.0
             for j in range(3):
-                total += M[i, 3 * k + j] * (_E0 * a[0, i, j] + _E1 * a[1, i, j] + _E2 * a[2, i, j])
-            F[i, k], R[i, k] = total * over, 0.0
+                total += W[i, col.M + 3 * k + j] * (_E0 * a[0, i, j] + _E1 * a[1, i, j] + _E2 * a[2, i, j])
+            W[i, col.F + k], W[i, col.R + k] = total * over, 0.0
     for i in range(n):
-        reduce(i, c.parent[i], c.parent[i] == n, 0.0, F, R, inverse, e, B, t, kept, tau0, scale, rho)
+        reduce(i, parent[i], parent[i] == n, 0.0, W)
     substitute(c, n, w, dV, dT)
     worst, node = 0.0, 0
     for i in range(n):
@@ -183,7 +183,7 @@ def march(c: Chain, ship: Curve, payout: Curve, n: int, s: State, settings: Sett
     floor, accuracy = PATIENCE * _stretch_time(c, n), 1e-2 * settings.tolerance
     energy0 = energy_of(c, n, x[0], v[0], T[0])
     power0, _ = power_of(c, n, x[0], v[0], a[0], T[0], w)
-    pull_on_ends(c, n, track, 0, x[0], v[0], a[0], T[0], w.t, w.size)
+    pull_on_ends(c, n, track, 0, x[0], v[0], a[0], T[0], w.W)
     first_row(track, n, x[0], v[0])
     code, link, quantity = DONE, 0, 0.0
     while row < track.t.size:
@@ -248,7 +248,7 @@ def march(c: Chain, ship: Curve, payout: Curve, n: int, s: State, settings: Sett
         if winding:
             c.length[n - 1], w.reel[0] = top[1], rates[1, 0]
         power_g, drag_g = power_of(c, n, x[1], v[1], a[1], T[1], w)
-        pull_on_ends(c, n, track, 1, x[1], v[1], a[1], T[1], w.t, w.size)
+        pull_on_ends(c, n, track, 1, x[1], v[1], a[1], T[1], w.W)
         if winding:
             c.length[n - 1], w.reel[0] = top[2], rates[2, 0]
         power1, drag1 = power_of(c, n, x[2], v[2], a[2], T[2], w)
@@ -261,7 +261,7 @@ def march(c: Chain, ship: Curve, payout: Curve, n: int, s: State, settings: Sett
         turnover += h * (_B1 * (abs(power_g - drag_g) + abs(drag_g)) + (1.0 - _B1) * (abs(power1 - drag1) + abs(drag1)))
         energy0, power0 = energy1, power1
         drift = max(drift, _drift(c, n, x[2], v[2], T[2], w.reel[0]))
-        pull_on_ends(c, n, track, 2, x[2], v[2], a[2], T[2], w.t, w.size)
+        pull_on_ends(c, n, track, 2, x[2], v[2], a[2], T[2], w.W)
         if not note_slack(c, n, track, t + h, T):
             code = EVENTS_FULL
             break

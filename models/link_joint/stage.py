@@ -24,18 +24,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.kernels import inline_kernel, kernel
+from models.link_joint import columns as col
 from models.link_joint.chain import Chain
-from models.link_joint.forces import (
-    NEAR,
-    Nine,
-    Three,
-    body_axes,
-    current_at,
-    directions,
-    end_direction,
-    end_drag,
-    end_velocity,
-)
+from models.link_joint.forces import FAR, NEAR, Nine, body_axes, current_at, directions, end_drag, water_at
 
 Floats = NDArray[np.float64]
 Six = tuple[float, float, float, float, float, float]
@@ -49,33 +40,15 @@ _CLOSED = 2e-9
 
 
 class Work(NamedTuple):
-    """What the elimination keeps for back-substitution: arrays over nodes (m + 1, ...) and links (m, ...)."""
+    """What a stage knows, (m + 1, WIDTH) in the columns of `models.link_joint.columns`."""
 
-    K: Floats  # (m + 1, 9) stiffness against dV
-    M: Floats  # (m + 1, 9) mass
-    F: Floats  # (m + 1, 3) force out of balance
-    R: Floats  # (m + 1, 3) what the eliminated nodes below add to it
-    inverse: Floats  # (m, 9)
-    e: Floats  # (m, 3) K^-1 t
-    k: Floats  # (m, 3)
-    G: Floats  # (m, 9)
-    L: Floats  # (m, 9) node i's stiffness against dV_p
-    B: Floats  # (m, 9) the parent's stiffness against dV_i
-    t: Floats  # (m, 3)
-    size: Floats  # (m,) |r|
-    v: Floats  # (m, 3)
-    tau0: Floats  # (m,)
+    W: Floats
     reel: Floats  # (1,) rate at which the ship's link grows by payout [m/s]
-    scale: Floats  # (m,) 1/(s + c/sigma), 0 of a slack link
-    rho: Floats  # (m,) closure error over sigma
 
 
 def work_for(nodes: int) -> Work:
     """Arrays for a chain of `nodes` nodes, the ship's included."""
-    shapes = {"K": 9, "M": 9, "F": 3, "R": 3, "inverse": 9, "e": 3, "k": 3, "G": 9, "L": 9, "B": 9, "t": 3, "v": 3}
-    vectors = {name: np.zeros((nodes, width)) for name, width in shapes.items()}
-    numbers = {name: np.zeros(nodes) for name in ("size", "tau0", "scale", "rho")}
-    return Work(**vectors, **numbers, reel=np.zeros(1))
+    return Work(W=np.zeros((nodes, col.WIDTH)), reel=np.zeros(1))
 
 
 @kernel
@@ -88,32 +61,29 @@ def assemble(
     Returns the largest closure error of a taut link over its length, how many links are slack, and how many are
     otherwise than at the assembly before.
     """
-    K, M, F, R, L, B, t, sizes = w.K, w.M, w.F, w.R, w.L, w.B, w.t, w.size
+    W, reel = w.W, w.reel[0]
     parent, part, lengths, compliance, damping = c.parent, c.part, c.length, c.compliance, c.damping
     poisson, area, masses, added, weights = c.poisson, c.area, c.mass, c.added_mass, c.weight
     normal_drag, tangential_drag, has_body, held = c.normal_drag, c.tangential_drag, c.has_body, c.held
-    depths, current_x, current_y, law, scales = c.current_depth, c.current_x, c.current_y, c.law, w.scale
+    depths, current_x, current_y, law, heavy = c.current_depth, c.current_x, c.current_y, c.law, c.specific_weight
+    still = depths.size == 0
     for i in range(n + 1):
-        for j in range(9):
-            K[i, j] = 0.0
-            M[i, j] = 0.0
-        for j in range(3):
-            F[i, j] = 0.0
-            R[i, j] = 0.0
+        for j in range(col.INVERSE):
+            W[i, j] = 0.0
     worst, slack, switched = 0.0, 0, 0
     over_g = 1.0 / g
-    directions(parent, n, X, t, sizes)
+    directions(part, parent, lengths, n, X, W)
     for i in range(n):
         p = parent[i]
-        l0, size = lengths[i], sizes[i]
-        tx, ty, tz = t[i, 0], t[i, 1], t[i, 2]
+        l0, size = lengths[i], W[i, col.SIZE]
+        tx, ty, tz = W[i, col.TANGENT], W[i, col.TANGENT + 1], W[i, col.TANGENT + 2]
         rate = tx * (V[i, 0] - V[p, 0]) + ty * (V[i, 1] - V[p, 1]) + tz * (V[i, 2] - V[p, 2])
         if p == n:
-            rate -= w.reel[0]
+            rate -= reel
         pressure = 0.0
         if compliance[i] > 0.0:
             depth = -0.5 * (X[i, 2] + X[p, 2])
-            pressure = (1.0 - 2.0 * poisson[i]) * c.specific_weight * depth * area[i] * compliance[i]
+            pressure = (1.0 - 2.0 * poisson[i]) * heavy * depth * area[i] * compliance[i]
         slip = compliance[i] * l0
         gap = size - l0 * (1.0 - pressure) + damping[i] * rate - slip * T[i]
         half = 0.5 * l0
@@ -123,7 +93,7 @@ def assemble(
             worst = abs(gap) / l0
         if not taut:
             slack += 1
-        if taut != (scales[i] > 0.0):
+        if taut != (W[i, col.SCALE] > 0.0):
             switched += 1
         # Drag follows the stretched area, (1 + e)(1 - nu e).
         e = size / l0 - 1.0
@@ -140,107 +110,79 @@ def assemble(
             stiff * (1.0 - tx * tx), -stiff * tx * ty, -stiff * tx * tz,
             stiff * (1.0 - ty * ty), -stiff * ty * tz, stiff * (1.0 - tz * tz),
         )  # fmt: skip
-        ex, ey, ez, own = end_direction(part, lengths, n, i, 0, t)
-        ux, uy, uz = end_velocity(depths, current_x, current_y, i, p, X, V)
-        drag, D, S = end_drag(law, kn, kt, ux, uy, uz, ex, ey, ez, size)
-        _add_load(i, i, -T[i], weight, over_g, drag, Q, t, vh, V, F)
-        _add_stiffness(i, i, over_g, -own * g, D, S, Q, P, M, K, L)
-        if p < n:
-            ex, ey, ez, own = end_direction(part, lengths, n, i, 1, t)
-            ux, uy, uz = end_velocity(depths, current_x, current_y, p, i, X, V)
-            drag, D, S = end_drag(law, kn, kt, ux, uy, uz, ex, ey, ez, size)
-            _add_load(p, i, T[i], weight, over_g, drag, Q, t, vh, V, F)
-            _add_stiffness(p, i, over_g, own * g, D, S, Q, P, M, K, B)
+        for end in range(1 if p == n else 2):
+            q, o, at, to, sign = (i, p, col.LOWER, col.L, -1.0) if end == 0 else (p, i, col.UPPER, col.B, 1.0)
+            ux = NEAR * V[q, 0] + FAR * V[o, 0]
+            uy = NEAR * V[q, 1] + FAR * V[o, 1]
+            uz = NEAR * V[q, 2] + FAR * V[o, 2]
+            if not still:
+                cx, cy = water_at(depths, current_x, current_y, X[q, 2], X[o, 2])
+                ux -= cx
+                uy -= cy
+            drag, D, S = end_drag(law, kn, kt, ux, uy, uz, W[i, at], W[i, at + 1], W[i, at + 2], size)
+            ax, ay, az = (V[q, 0] - vh[q, 0]) * over_g, (V[q, 1] - vh[q, 1]) * over_g, (V[q, 2] - vh[q, 2]) * over_g
+            pull = sign * T[i]
+            W[q, col.F] += drag[0] - (Q[0] * ax + Q[1] * ay + Q[2] * az) + pull * tx
+            W[q, col.F + 1] += drag[1] - (Q[1] * ax + Q[3] * ay + Q[4] * az) + pull * ty
+            W[q, col.F + 2] += drag[2] - (Q[2] * ax + Q[4] * ay + Q[5] * az) + pull * tz - weight
+            _add_stiffness(q, i, over_g, sign * W[i, at + 3] * g, D, S, Q, P, W, to)
         if has_body[i]:
-            _add_body(
-                i, over_g, tx, ty, c.body_mass, c.body_weight, c.body_added_mass, c.body_drag,
-                depths, current_x, current_y, vh, X, V, F, M, K,
-            )  # fmt: skip
-        _eliminate(
-            i, p, gap, slip, g + damping[i], taut, held[i], p == n, T[i],
-            K, F, R, w.inverse, w.e, w.k, w.G, L, B, t, w.v, w.tau0, scales, w.rho,
-        )  # fmt: skip
+            cx, cy = (0.0, 0.0) if still else current_at(depths, current_x, current_y, X[i, 2])
+            _add_body(i, over_g, cx, cy, c.body_mass, c.body_weight, c.body_added_mass, c.body_drag, vh, V, W)
+        _eliminate(i, p, gap, slip, g + damping[i], taut, held[i], p == n, T[i], W)
     return worst, slack, switched
 
 
 @inline_kernel
-def _add_load(
-    q: int,
-    i: int,
-    pull: float,
-    weight: float,
-    over_g: float,
-    drag: Three,
-    Q: Six,
-    t: Floats,
-    vh: Floats,
-    V: Floats,
-    F: Floats,
-) -> None:
-    """Force on node q from half of link i: drag, pull, weight, and its mass Q against the acceleration."""
-    ax, ay, az = (V[q, 0] - vh[q, 0]) * over_g, (V[q, 1] - vh[q, 1]) * over_g, (V[q, 2] - vh[q, 2]) * over_g
-    F[q, 0] += drag[0] - (Q[0] * ax + Q[1] * ay + Q[2] * az) + pull * t[i, 0]
-    F[q, 1] += drag[1] - (Q[1] * ax + Q[3] * ay + Q[4] * az) + pull * t[i, 1]
-    F[q, 2] += drag[2] - (Q[2] * ax + Q[4] * ay + Q[5] * az) + pull * t[i, 2] - weight
-
-
-@inline_kernel
 def _add_stiffness(
-    q: int, i: int, over_g: float, turn: float, D: Nine, S: Nine, Q: Six, P: Six, M: Floats, K: Floats, coupling: Floats
+    q: int, i: int, over_g: float, turn: float, D: Nine, S: Nine, Q: Six, P: Six, W: Floats, to: int
 ) -> None:
-    """Mass and stiffness of node q from half of link i; `coupling` gets what couples it to the other end.
+    """Mass and stiffness of node q from half of link i, and in the columns from `to` what couples it to the other end.
 
     Q and P are the half link's mass and geometric stiffness, both (xx, xy, xz, yy, yz, zz).
     """
-    M[q, 0] += Q[0]
-    M[q, 1] += Q[1]
-    M[q, 2] += Q[2]
-    M[q, 3] += Q[1]
-    M[q, 4] += Q[3]
-    M[q, 5] += Q[4]
-    M[q, 6] += Q[2]
-    M[q, 7] += Q[4]
-    M[q, 8] += Q[5]
+    W[q, col.M] += Q[0]
+    W[q, col.M + 1] += Q[1]
+    W[q, col.M + 2] += Q[2]
+    W[q, col.M + 3] += Q[1]
+    W[q, col.M + 4] += Q[3]
+    W[q, col.M + 5] += Q[4]
+    W[q, col.M + 6] += Q[2]
+    W[q, col.M + 7] += Q[4]
+    W[q, col.M + 8] += Q[5]
     b0, b1, b2 = P[0] + turn * S[0], P[1] + turn * S[1], P[2] + turn * S[2]
     b3, b4, b5 = P[1] + turn * S[3], P[3] + turn * S[4], P[4] + turn * S[5]
     b6, b7, b8 = P[2] + turn * S[6], P[4] + turn * S[7], P[5] + turn * S[8]
-    K[q, 0] += Q[0] * over_g + NEAR * D[0] + b0
-    K[q, 1] += Q[1] * over_g + NEAR * D[1] + b1
-    K[q, 2] += Q[2] * over_g + NEAR * D[2] + b2
-    K[q, 3] += Q[1] * over_g + NEAR * D[3] + b3
-    K[q, 4] += Q[3] * over_g + NEAR * D[4] + b4
-    K[q, 5] += Q[4] * over_g + NEAR * D[5] + b5
-    K[q, 6] += Q[2] * over_g + NEAR * D[6] + b6
-    K[q, 7] += Q[4] * over_g + NEAR * D[7] + b7
-    K[q, 8] += Q[5] * over_g + NEAR * D[8] + b8
-    far = 1.0 - NEAR
-    coupling[i, 0], coupling[i, 1], coupling[i, 2] = b0 - far * D[0], b1 - far * D[1], b2 - far * D[2]
-    coupling[i, 3], coupling[i, 4], coupling[i, 5] = b3 - far * D[3], b4 - far * D[4], b5 - far * D[5]
-    coupling[i, 6], coupling[i, 7], coupling[i, 8] = b6 - far * D[6], b7 - far * D[7], b8 - far * D[8]
+    W[q, col.K] += Q[0] * over_g + NEAR * D[0] + b0
+    W[q, col.K + 1] += Q[1] * over_g + NEAR * D[1] + b1
+    W[q, col.K + 2] += Q[2] * over_g + NEAR * D[2] + b2
+    W[q, col.K + 3] += Q[1] * over_g + NEAR * D[3] + b3
+    W[q, col.K + 4] += Q[3] * over_g + NEAR * D[4] + b4
+    W[q, col.K + 5] += Q[4] * over_g + NEAR * D[5] + b5
+    W[q, col.K + 6] += Q[2] * over_g + NEAR * D[6] + b6
+    W[q, col.K + 7] += Q[4] * over_g + NEAR * D[7] + b7
+    W[q, col.K + 8] += Q[5] * over_g + NEAR * D[8] + b8
+    W[i, to], W[i, to + 1], W[i, to + 2] = b0 - FAR * D[0], b1 - FAR * D[1], b2 - FAR * D[2]
+    W[i, to + 3], W[i, to + 4], W[i, to + 5] = b3 - FAR * D[3], b4 - FAR * D[4], b5 - FAR * D[5]
+    W[i, to + 6], W[i, to + 7], W[i, to + 8] = b6 - FAR * D[6], b7 - FAR * D[7], b8 - FAR * D[8]
 
 
 @kernel
 def _add_body(
     i: int,
     over_g: float,
-    tx: float,
-    ty: float,
+    cx: float,
+    cy: float,
     masses: Floats,
     weights: Floats,
     added: Floats,
     drags: Floats,
-    depths: Floats,
-    current_x: Floats,
-    current_y: Floats,
     vh: Floats,
-    X: Floats,
     V: Floats,
-    F: Floats,
-    M: Floats,
-    K: Floats,
+    W: Floats,
 ) -> None:
     """The body at node i: weight, drag |u| (A_surge, A_sway, A_heave) u and added mass, in its own axes."""
-    cx, cy = current_at(depths, current_x, current_y, X[i, 2])
+    tx, ty = W[i, col.TANGENT], W[i, col.TANGENT + 1]
     ux, uy, uz = V[i, 0] - cx, V[i, 1] - cy, V[i, 2]
     ax, ay, az = (V[i, 0] - vh[i, 0]) * over_g, (V[i, 1] - vh[i, 1]) * over_g, (V[i, 2] - vh[i, 2]) * over_g
     m = masses[i]
@@ -250,24 +192,24 @@ def _add_body(
     dzz = drags[i, 2]
     speed = math.sqrt(ux * ux + uy * uy + uz * uz)
     wx, wy, wz = dxx * ux + dxy * uy, dxy * ux + dyy * uy, dzz * uz
-    F[i, 0] -= speed * wx + (m + mxx) * ax + mxy * ay
-    F[i, 1] -= speed * wy + mxy * ax + (m + myy) * ay
-    F[i, 2] -= speed * wz + mzz * az + weights[i]
+    W[i, col.F] -= speed * wx + (m + mxx) * ax + mxy * ay
+    W[i, col.F + 1] -= speed * wy + mxy * ax + (m + myy) * ay
+    W[i, col.F + 2] -= speed * wz + mzz * az + weights[i]
     over = 1.0 / (speed + 1e-12)
-    M[i, 0] += m + mxx
-    M[i, 1] += mxy
-    M[i, 3] += mxy
-    M[i, 4] += m + myy
-    M[i, 8] += mzz
-    K[i, 0] += (m + mxx) * over_g + speed * dxx + over * wx * ux
-    K[i, 1] += mxy * over_g + speed * dxy + over * wx * uy
-    K[i, 2] += over * wx * uz
-    K[i, 3] += mxy * over_g + speed * dxy + over * wy * ux
-    K[i, 4] += (m + myy) * over_g + speed * dyy + over * wy * uy
-    K[i, 5] += over * wy * uz
-    K[i, 6] += over * wz * ux
-    K[i, 7] += over * wz * uy
-    K[i, 8] += mzz * over_g + speed * dzz + over * wz * uz
+    W[i, col.M] += m + mxx
+    W[i, col.M + 1] += mxy
+    W[i, col.M + 3] += mxy
+    W[i, col.M + 4] += m + myy
+    W[i, col.M + 8] += mzz
+    W[i, col.K] += (m + mxx) * over_g + speed * dxx + over * wx * ux
+    W[i, col.K + 1] += mxy * over_g + speed * dxy + over * wx * uy
+    W[i, col.K + 2] += over * wx * uz
+    W[i, col.K + 3] += mxy * over_g + speed * dxy + over * wy * ux
+    W[i, col.K + 4] += (m + myy) * over_g + speed * dyy + over * wy * uy
+    W[i, col.K + 5] += over * wy * uz
+    W[i, col.K + 6] += over * wz * ux
+    W[i, col.K + 7] += over * wz * uy
+    W[i, col.K + 8] += mzz * over_g + speed * dzz + over * wz * uz
 
 
 @inline_kernel
@@ -281,25 +223,12 @@ def _eliminate(
     held: bool,
     last: bool,
     tension: float,
-    K: Floats,
-    F: Floats,
-    R: Floats,
-    inverse: Floats,
-    e: Floats,
-    k: Floats,
-    G: Floats,
-    L: Floats,
-    B: Floats,
-    t: Floats,
-    v: Floats,
-    tau0: Floats,
-    scales: Floats,
-    rho: Floats,
+    W: Floats,
 ) -> None:
     """Solve node i and its link for the parent's change, and hand what is left on to the parent."""
-    a, b, c, d, f, g, h, m, o = (
-        K[i, 0], K[i, 1], K[i, 2], K[i, 3], K[i, 4], K[i, 5], K[i, 6], K[i, 7], K[i, 8],
-    )  # fmt: skip
+    a, b, c = W[i, col.K], W[i, col.K + 1], W[i, col.K + 2]
+    d, f, g = W[i, col.K + 3], W[i, col.K + 4], W[i, col.K + 5]
+    h, m, o = W[i, col.K + 6], W[i, col.K + 7], W[i, col.K + 8]
     c1, c2, c3 = f * o - g * m, g * h - d * o, d * m - f * h
     over = 0.0 if held else 1.0 / (a * c1 + b * c2 + c * c3)
     J = (
@@ -307,18 +236,28 @@ def _eliminate(
         c2 * over, (a * o - c * h) * over, (c * d - a * g) * over,
         c3 * over, (b * h - a * m) * over, (a * f - b * d) * over,
     )  # fmt: skip
-    tx, ty, tz = t[i, 0], t[i, 1], t[i, 2]
+    tx, ty, tz = W[i, col.TANGENT], W[i, col.TANGENT + 1], W[i, col.TANGENT + 2]
     ex, ey, ez = J[0] * tx + J[1] * ty + J[2] * tz, J[3] * tx + J[4] * ty + J[5] * tz, J[6] * tx + J[7] * ty + J[8] * tz
     s = tx * ex + ty * ey + tz * ez
     scale = 1.0 / (s + slip / sigma) if taut else 0.0
-    scales[i] = scale
-    rho[i] = gap / sigma
-    inverse[i, 0], inverse[i, 1], inverse[i, 2] = J[0], J[1], J[2]
-    inverse[i, 3], inverse[i, 4], inverse[i, 5] = J[3], J[4], J[5]
-    inverse[i, 6], inverse[i, 7], inverse[i, 8] = J[6], J[7], J[8]
-    e[i, 0], e[i, 1], e[i, 2] = ex, ey, ez
+    W[i, col.SCALE] = scale
+    W[i, col.RHO] = gap / sigma
+    W[i, col.INVERSE], W[i, col.INVERSE + 1], W[i, col.INVERSE + 2] = J[0], J[1], J[2]
+    W[i, col.INVERSE + 3], W[i, col.INVERSE + 4], W[i, col.INVERSE + 5] = J[3], J[4], J[5]
+    W[i, col.INVERSE + 6], W[i, col.INVERSE + 7], W[i, col.INVERSE + 8] = J[6], J[7], J[8]
+    W[i, col.E], W[i, col.E + 1], W[i, col.E + 2] = ex, ey, ez
     # t' K^-1 B_lower, and K^-1 B_lower
-    U = (L[i, 0], L[i, 1], L[i, 2], L[i, 3], L[i, 4], L[i, 5], L[i, 6], L[i, 7], L[i, 8])
+    U = (
+        W[i, col.L],
+        W[i, col.L + 1],
+        W[i, col.L + 2],
+        W[i, col.L + 3],
+        W[i, col.L + 4],
+        W[i, col.L + 5],
+        W[i, col.L + 6],
+        W[i, col.L + 7],
+        W[i, col.L + 8],
+    )
     h1 = J[0] * U[0] + J[1] * U[3] + J[2] * U[6]
     h2 = J[0] * U[1] + J[1] * U[4] + J[2] * U[7]
     h3 = J[0] * U[2] + J[1] * U[5] + J[2] * U[8]
@@ -331,72 +270,76 @@ def _eliminate(
     kx = scale * (tx * h1 + ty * h4 + tz * h7 - tx)
     ky = scale * (tx * h2 + ty * h5 + tz * h8 - ty)
     kz = scale * (tx * h3 + ty * h6 + tz * h9 - tz)
-    k[i, 0], k[i, 1], k[i, 2] = kx, ky, kz
+    W[i, col.KAPPA], W[i, col.KAPPA + 1], W[i, col.KAPPA + 2] = kx, ky, kz
     g1, g2, g3 = h1 - ex * kx, h2 - ex * ky, h3 - ex * kz
     g4, g5, g6 = h4 - ey * kx, h5 - ey * ky, h6 - ey * kz
     g7, g8, g9 = h7 - ez * kx, h8 - ez * ky, h9 - ez * kz
-    G[i, 0], G[i, 1], G[i, 2], G[i, 3], G[i, 4], G[i, 5], G[i, 6], G[i, 7], G[i, 8] = g1, g2, g3, g4, g5, g6, g7, g8, g9
-    reduce(i, p, last, tension, F, R, inverse, e, B, t, v, tau0, scales, rho)
+    (
+        W[i, col.G],
+        W[i, col.G + 1],
+        W[i, col.G + 2],
+        W[i, col.G + 3],
+        W[i, col.G + 4],
+        W[i, col.G + 5],
+        W[i, col.G + 6],
+        W[i, col.G + 7],
+        W[i, col.G + 8],
+    ) = g1, g2, g3, g4, g5, g6, g7, g8, g9
+    reduce(i, p, last, tension, W)
     if not last:
-        U = (B[i, 0], B[i, 1], B[i, 2], B[i, 3], B[i, 4], B[i, 5], B[i, 6], B[i, 7], B[i, 8])
-        K[p, 0] -= U[0] * g1 + U[1] * g4 + U[2] * g7 + tx * kx
-        K[p, 1] -= U[0] * g2 + U[1] * g5 + U[2] * g8 + tx * ky
-        K[p, 2] -= U[0] * g3 + U[1] * g6 + U[2] * g9 + tx * kz
-        K[p, 3] -= U[3] * g1 + U[4] * g4 + U[5] * g7 + ty * kx
-        K[p, 4] -= U[3] * g2 + U[4] * g5 + U[5] * g8 + ty * ky
-        K[p, 5] -= U[3] * g3 + U[4] * g6 + U[5] * g9 + ty * kz
-        K[p, 6] -= U[6] * g1 + U[7] * g4 + U[8] * g7 + tz * kx
-        K[p, 7] -= U[6] * g2 + U[7] * g5 + U[8] * g8 + tz * ky
-        K[p, 8] -= U[6] * g3 + U[7] * g6 + U[8] * g9 + tz * kz
+        U = (
+            W[i, col.B],
+            W[i, col.B + 1],
+            W[i, col.B + 2],
+            W[i, col.B + 3],
+            W[i, col.B + 4],
+            W[i, col.B + 5],
+            W[i, col.B + 6],
+            W[i, col.B + 7],
+            W[i, col.B + 8],
+        )
+        W[p, col.K] -= U[0] * g1 + U[1] * g4 + U[2] * g7 + tx * kx
+        W[p, col.K + 1] -= U[0] * g2 + U[1] * g5 + U[2] * g8 + tx * ky
+        W[p, col.K + 2] -= U[0] * g3 + U[1] * g6 + U[2] * g9 + tx * kz
+        W[p, col.K + 3] -= U[3] * g1 + U[4] * g4 + U[5] * g7 + ty * kx
+        W[p, col.K + 4] -= U[3] * g2 + U[4] * g5 + U[5] * g8 + ty * ky
+        W[p, col.K + 5] -= U[3] * g3 + U[4] * g6 + U[5] * g9 + ty * kz
+        W[p, col.K + 6] -= U[6] * g1 + U[7] * g4 + U[8] * g7 + tz * kx
+        W[p, col.K + 7] -= U[6] * g2 + U[7] * g5 + U[8] * g8 + tz * ky
+        W[p, col.K + 8] -= U[6] * g3 + U[7] * g6 + U[8] * g9 + tz * kz
 
 
 @inline_kernel
-def reduce(
-    i: int,
-    p: int,
-    last: bool,
-    tension: float,
-    F: Floats,
-    R: Floats,
-    inverse: Floats,
-    e: Floats,
-    B: Floats,
-    t: Floats,
-    v: Floats,
-    tau0: Floats,
-    scales: Floats,
-    rho: Floats,
-) -> None:
+def reduce(i: int, p: int, last: bool, tension: float, W: Floats) -> None:
     """The right-hand side's part of the elimination of node i."""
-    J = inverse
-    x, y, z = F[i, 0] + R[i, 0], F[i, 1] + R[i, 1], F[i, 2] + R[i, 2]
-    yx = J[i, 0] * x + J[i, 1] * y + J[i, 2] * z
-    yy = J[i, 3] * x + J[i, 4] * y + J[i, 5] * z
-    yz = J[i, 6] * x + J[i, 7] * y + J[i, 8] * z
-    tx, ty, tz = t[i, 0], t[i, 1], t[i, 2]
-    tau = scales[i] * (rho[i] + tx * yx + ty * yy + tz * yz) if scales[i] > 0.0 else -tension
-    tau0[i] = tau
-    vx, vy, vz = yx - e[i, 0] * tau, yy - e[i, 1] * tau, yz - e[i, 2] * tau
-    v[i, 0], v[i, 1], v[i, 2] = vx, vy, vz
+    x, y, z = W[i, col.F] + W[i, col.R], W[i, col.F + 1] + W[i, col.R + 1], W[i, col.F + 2] + W[i, col.R + 2]
+    yx = W[i, col.INVERSE] * x + W[i, col.INVERSE + 1] * y + W[i, col.INVERSE + 2] * z
+    yy = W[i, col.INVERSE + 3] * x + W[i, col.INVERSE + 4] * y + W[i, col.INVERSE + 5] * z
+    yz = W[i, col.INVERSE + 6] * x + W[i, col.INVERSE + 7] * y + W[i, col.INVERSE + 8] * z
+    tx, ty, tz = W[i, col.TANGENT], W[i, col.TANGENT + 1], W[i, col.TANGENT + 2]
+    tau = W[i, col.SCALE] * (W[i, col.RHO] + tx * yx + ty * yy + tz * yz) if W[i, col.SCALE] > 0.0 else -tension
+    W[i, col.TAU] = tau
+    vx, vy, vz = yx - W[i, col.E] * tau, yy - W[i, col.E + 1] * tau, yz - W[i, col.E + 2] * tau
+    W[i, col.V], W[i, col.V + 1], W[i, col.V + 2] = vx, vy, vz
     if not last:
-        R[p, 0] += B[i, 0] * vx + B[i, 1] * vy + B[i, 2] * vz + tx * tau
-        R[p, 1] += B[i, 3] * vx + B[i, 4] * vy + B[i, 5] * vz + ty * tau
-        R[p, 2] += B[i, 6] * vx + B[i, 7] * vy + B[i, 8] * vz + tz * tau
+        W[p, col.R] += W[i, col.B] * vx + W[i, col.B + 1] * vy + W[i, col.B + 2] * vz + tx * tau
+        W[p, col.R + 1] += W[i, col.B + 3] * vx + W[i, col.B + 4] * vy + W[i, col.B + 5] * vz + ty * tau
+        W[p, col.R + 2] += W[i, col.B + 6] * vx + W[i, col.B + 7] * vy + W[i, col.B + 8] * vz + tz * tau
 
 
 @kernel
 def substitute(c: Chain, n: int, w: Work, dV: Floats, dT: Floats) -> None:
     """Changes of velocity dV (m + 1, 3) and tension dT (m,), from the ship down."""
-    parent, v, G, k, tau0 = c.parent, w.v, w.G, w.k, w.tau0
+    parent, W = c.parent, w.W
     dV[n, 0], dV[n, 1], dV[n, 2] = 0.0, 0.0, 0.0
     for j in range(n):
         i = n - 1 - j
         p = parent[i]
         x, y, z = dV[p, 0], dV[p, 1], dV[p, 2]
-        dT[i] = tau0[i] + k[i, 0] * x + k[i, 1] * y + k[i, 2] * z
-        dV[i, 0] = v[i, 0] + G[i, 0] * x + G[i, 1] * y + G[i, 2] * z
-        dV[i, 1] = v[i, 1] + G[i, 3] * x + G[i, 4] * y + G[i, 5] * z
-        dV[i, 2] = v[i, 2] + G[i, 6] * x + G[i, 7] * y + G[i, 8] * z
+        dT[i] = W[i, col.TAU] + W[i, col.KAPPA] * x + W[i, col.KAPPA + 1] * y + W[i, col.KAPPA + 2] * z
+        dV[i, 0] = W[i, col.V] + W[i, col.G] * x + W[i, col.G + 1] * y + W[i, col.G + 2] * z
+        dV[i, 1] = W[i, col.V + 1] + W[i, col.G + 3] * x + W[i, col.G + 4] * y + W[i, col.G + 5] * z
+        dV[i, 2] = W[i, col.V + 2] + W[i, col.G + 6] * x + W[i, col.G + 7] * y + W[i, col.G + 8] * z
 
 
 @kernel

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.kernels import kernel
+from models.link_joint import columns as col
 from models.link_joint.chain import Chain, Layout, build
 from models.link_joint.forces import current_at, end_force
 from models.link_joint.stage import Work, assemble, solve_stage, work_for
@@ -212,8 +213,8 @@ def _settle(c: Chain, n: int, x: Floats, v: Floats, T: Floats, w: Work, rounds: 
                 if c.held[i]:
                     continue
                 for j in range(3):
-                    if abs(w.F[i, j]) > residual:
-                        residual, node = abs(w.F[i, j]), i
+                    if abs(w.W[i, col.F + j]) > residual:
+                        residual, node = abs(w.W[i, col.F + j]), i
             residual /= largest
             if residual <= _BALANCED:
                 return residual, node, done

@@ -7,8 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.kernels import kernel
+from models.link_joint import columns as col
 from models.link_joint.chain import Chain
-from models.link_joint.forces import directions, end_direction, end_force, end_velocity
+from models.link_joint.forces import FAR, NEAR, directions, end_force, water_at
 
 Floats = NDArray[np.float64]
 
@@ -48,20 +49,24 @@ def hermite(s: float, h: float, x0: float, v0: float, x1: float, v1: float) -> f
 
 
 @kernel
-def _end_tension(c: Chain, n: int, i: int, end: int, X: Floats, V: Floats, A: Floats, T: Floats, t: Floats) -> float:
+def _end_tension(c: Chain, n: int, i: int, end: int, X: Floats, V: Floats, A: Floats, T: Floats, W: Floats) -> float:
     """Pull of the cable on what holds its lower (0) or upper (1) end [N]: the link's, and its half link's load.
 
-    `t` (m, 3) are the links' tangents; the ship's motion stands in the last row of V and A.
+    W holds the links' tangents; the ship's motion stands in the last row of V and A.
     """
     if T[i] <= 0.0:
         return 0.0
     p = c.parent[i]
     q, o = (i, p) if end == 0 else (p, i)
     half = 0.5 * c.length[i]
-    ex, ey, ez, _ = end_direction(c.part, c.length, n, i, end, t)
-    ux, uy, uz = end_velocity(c.current_depth, c.current_x, c.current_y, q, o, X, V)
-    fx, fy, fz = end_force(c.law, c.normal_drag[i] * half, c.tangential_drag[i] * half, ux, uy, uz, ex, ey, ez)
-    tx, ty, tz = t[i, 0], t[i, 1], t[i, 2]
+    at = col.UPPER if end == 1 else col.LOWER
+    cx, cy = water_at(c.current_depth, c.current_x, c.current_y, X[q, 2], X[o, 2])
+    ux = NEAR * V[q, 0] + FAR * V[o, 0] - cx
+    uy = NEAR * V[q, 1] + FAR * V[o, 1] - cy
+    uz = NEAR * V[q, 2] + FAR * V[o, 2]
+    kn, kt = c.normal_drag[i] * half, c.tangential_drag[i] * half
+    fx, fy, fz = end_force(c.law, kn, kt, ux, uy, uz, W[i, at], W[i, at + 1], W[i, at + 2])
+    tx, ty, tz = W[i, col.TANGENT], W[i, col.TANGENT + 1], W[i, col.TANGENT + 2]
     along = A[q, 0] * tx + A[q, 1] * ty + A[q, 2] * tz
     m, ma = c.mass[i] * half, c.added_mass[i] * half
     pull = T[i] if end == 1 else -T[i]
@@ -73,14 +78,14 @@ def _end_tension(c: Chain, n: int, i: int, end: int, X: Floats, V: Floats, A: Fl
 
 @kernel
 def pull_on_ends(
-    c: Chain, n: int, track: Track, point: int, X: Floats, V: Floats, A: Floats, T: Floats, t: Floats, size: Floats
+    c: Chain, n: int, track: Track, point: int, X: Floats, V: Floats, A: Floats, T: Floats, W: Floats
 ) -> None:
-    """Pull at both ends of every part [N], at one point of a step; t (m, 3) and size (m,) are work arrays."""
-    directions(c.parent, n, X, t, size)
+    """Pull at both ends of every part [N], at one point of a step; W is the work array."""
+    directions(c.part, c.parent, c.length, n, X, W)
     for part in range(track.ends.size):
         top = n - 1 if part == 0 else track.tops[part]
-        track.pull[point, part, 0] = _end_tension(c, n, top, 1, X, V, A, T, t)
-        track.pull[point, part, 1] = _end_tension(c, n, track.ends[part], 0, X, V, A, T, t)
+        track.pull[point, part, 0] = _end_tension(c, n, top, 1, X, V, A, T, W)
+        track.pull[point, part, 1] = _end_tension(c, n, track.ends[part], 0, X, V, A, T, W)
 
 
 @kernel
