@@ -2,18 +2,31 @@
 
 import sys
 from collections.abc import Sequence
-from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import Annotated, Literal
 
 import typer
 
+from ident import options
 from ident.exits import exit_code
+from ident.options import (
+    Budget,
+    Folder,
+    Models,
+    NameOrFile,
+    Out,
+    Quiet,
+    Records,
+    Reference,
+    Seed,
+    Start,
+    Starts,
+    Stepper,
+    Tolerance,
+    Window,
+)
 from ident.terminal import progress, write_notes, write_table
 from models.quantity import InvalidInput, Quantity, non_negative, positive
-
-if TYPE_CHECKING:
-    from ident.configuration import Configuration
 
 app = typer.Typer(
     name="cable-ident",
@@ -22,45 +35,6 @@ app = typer.Typer(
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )
-
-
-class Start(StrEnum):
-    """Where a simulation starts."""
-
-    rest = "rest"
-    steady = "steady"
-
-
-class Reference(StrEnum):
-    """The reference simulators."""
-
-    spectral = "spectral"
-
-
-class Stepper(StrEnum):
-    """The steppers of the reference simulator."""
-
-    implicit = "implicit"
-    newmark = "newmark"
-    runge_kutta = "runge-kutta"
-
-
-NameOrFile = Annotated[str, typer.Argument(metavar="NAME|FILE", help="A built-in configuration, or a file.")]
-Records = Annotated[list[Path], typer.Option("--record", metavar="FILE", help="A trace; may be repeated.")]
-Out = Annotated[Path, typer.Option(metavar="PATH", help="Where the result goes.")]
-Folder = Annotated[Path | None, typer.Option(metavar="DIR", help="Where the result goes; ./NAME if left out.")]
-Seed = Annotated[int, typer.Option(min=0, help="Seed of all that is drawn.")]
-Quiet = Annotated[bool, typer.Option("--quiet", help="Show no progress.")]
-Models = Annotated[str | None, typer.Option(metavar="MODEL[,MODEL]", help="The models to fit.")]
-Window = Annotated[
-    float | None,
-    typer.Option(
-        "--differentiator",
-        help="Window [s] that velocity is read over; as configured if left out, 0 for records without noise.",
-    ),
-]
-Budget = Annotated[int | None, typer.Option(min=1, help="Most simulations a fit; as configured if left out.")]
-Starts = Annotated[int | None, typer.Option(min=1, max=1000, help="Start points; as configured if left out.")]
 
 
 def _version(wanted: bool) -> None:
@@ -72,7 +46,7 @@ def _version(wanted: bool) -> None:
 
 
 @app.callback()
-def options(
+def common(
     version: Annotated[
         bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version and exit.")
     ] = False,
@@ -125,9 +99,9 @@ def run(name: NameOrFile, out: Folder = None, seed: Seed = 0, models: Models = N
 
     Makes truth with the reference simulator, fits the reduced models to it, and scores them on another record.
     """
-    configuration = _load(name)
+    configuration = options.load(name)
     folder = out if out is not None else Path(configuration.name)
-    chosen = None if models is None else _models(models)
+    chosen = None if models is None else options.models(models)
     from ident.studies import run as study
 
     with progress(quiet=quiet) as report:
@@ -142,19 +116,20 @@ def simulate(
     ship: Annotated[Path, typer.Option(metavar="TRACE.csv", help="The ship's motion.")],
     out: Out,
     reference: Annotated[Reference, typer.Option(help="The simulator.")] = Reference.spectral,
-    tolerance: Annotated[
-        float | None, typer.Option(help="RMS velocity error [m/s]; as configured if left out.")
+    links: Annotated[
+        int | None, typer.Option(min=4, help="Links of the chain's first part; as configured if left out.")
     ] = None,
+    tolerance: Tolerance = None,
     start: Annotated[Start, typer.Option(help="Where it starts.")] = Start.rest,
-    stepper: Annotated[Stepper, typer.Option(help="The time stepper.")] = Stepper.implicit,
+    stepper: Annotated[Stepper | None, typer.Option(help="The time stepper, of the spectral simulator.")] = None,
 ) -> None:
-    """Simulate the vehicle under a ship's motion."""
+    """Simulate what is towed under a ship's motion."""
     from ident.settings import SpectralSettings
     from models.quantity import quantities
 
-    _within("--tolerance", tolerance, quantities(SpectralSettings)["tolerance"])
-    _apart(out, ship)
-    configuration = _load(name)
+    options.within("--tolerance", tolerance, quantities(SpectralSettings)["tolerance"])
+    options.apart(out, ship)
+    configuration = options.load(name)
     from ident.studies import simulate as study
 
     typer.echo(
@@ -163,9 +138,10 @@ def simulate(
             ship=ship,
             out=out,
             reference=reference.value,
+            links=links,
             tolerance=tolerance,
             start=start.value,
-            stepper=stepper.value,
+            stepper=None if stepper is None else stepper.value,
         )
     )
 
@@ -178,21 +154,34 @@ def record(
         typer.Option(
             "--input",
             metavar="KIND|FILE",
-            help="standard, recorded-style, sinusoids, ramps, first-order, step, sea, winch, winch-depth, "
-            "a ship trace, or several joined by +.",
+            help="standard, recorded-style, sinusoids, ramps, first-order, step, straight, full-turn, u-turn, "
+            "speed-changes, zig-zag, waypoints, sea, winch, winch-depth, a ship trace, or several joined by +.",
         ),
     ],
     out: Out,
     duration: Annotated[float | None, typer.Option(help="How long [s]; as configured if left out.")] = None,
     sensor: Annotated[bool, typer.Option("--sensor", help="What the sensor sees, not the truth.")] = False,
+    reference: Annotated[
+        Reference | None, typer.Option(help="The simulator; the one that the input needs if left out.")
+    ] = None,
     seed: Seed = 0,
 ) -> None:
     """Make a synthetic record of ship and vehicle."""
-    _within("--duration", duration, positive("T", "s"))
-    configuration = _load(name)
+    options.within("--duration", duration, positive("T", "s"))
+    configuration = options.load(name)
     from ident.studies import record as study
 
-    typer.echo(study.record(configuration, kind=kind, duration=duration, sensor=sensor, seed=seed, out=out))
+    typer.echo(
+        study.record(
+            configuration,
+            kind=kind,
+            duration=duration,
+            sensor=sensor,
+            seed=seed,
+            out=out,
+            reference=None if reference is None else reference.value,
+        )
+    )
 
 
 @app.command()
@@ -210,9 +199,9 @@ def fit(
     quiet: Quiet = False,
 ) -> None:
     """Fit reduced models to records."""
-    _apart(out, *records)
-    _within("--differentiator", differentiator, non_negative("T_w", "s"))
-    configuration, chosen = _load(name), _models(model)
+    options.apart(out, *records)
+    options.within("--differentiator", differentiator, non_negative("T_w", "s"))
+    configuration, chosen = options.load(name), options.models(model)
     from ident.studies import fit as study
 
     with progress(quiet=quiet) as report:
@@ -242,8 +231,8 @@ def verify(
     differentiator: Window = None,
 ) -> None:
     """Score fitted models on other records."""
-    _apart(out, fit, *records)
-    _within("--differentiator", differentiator, non_negative("T_w", "s"))
+    options.apart(out, fit, *records)
+    options.within("--differentiator", differentiator, non_negative("T_w", "s"))
     from ident.studies import verify as study
 
     chosen: Literal["rest", "steady"] | None = None if start is None else start.value
@@ -255,7 +244,7 @@ def verify(
 @app.command()
 def step(name: NameOrFile, out: Out, quiet: Quiet = False) -> None:
     """Compare step responses over lengths, weights."""
-    configuration = _load(name)
+    configuration = options.load(name)
     from ident.studies import step as study
 
     with progress(quiet=quiet) as report:
@@ -275,8 +264,8 @@ def crossval(
     quiet: Quiet = False,
 ) -> None:
     """Fit the first part of tows, score the rest."""
-    _within("--fraction", fraction, Quantity("f", "-", lower=0.0, upper=1.0, open_lower=True, open_upper=True))
-    configuration = _load(name)
+    options.within("--fraction", fraction, Quantity("f", "-", lower=0.0, upper=1.0, open_lower=True, open_upper=True))
+    configuration = options.load(name)
     from ident.studies import crossval as study
 
     with progress(quiet=quiet) as report:
@@ -291,6 +280,94 @@ def crossval(
         )
     write_table(result.table)
     typer.echo(f"{result.folder} written.")
+
+
+@app.command()
+def turn(
+    name: NameOrFile,
+    out: Out,
+    speed: Annotated[str | None, typer.Option(metavar="SPEED[,SPEED]", help="Such as '6 kn' or '3 m/s'.")] = None,
+    radius: Annotated[str | None, typer.Option(metavar="M[,M]", help="Radii of the turn [m].")] = None,
+    turns: Annotated[str | None, typer.Option(metavar="N[,N]", help="Circles of a full turn.")] = None,
+    u_turn: Annotated[bool, typer.Option("--u-turn", help="Half a circle, then straight back.")] = False,
+    parts: Annotated[str | None, typer.Option(metavar="N[,N]", help="Parts that are towed; all if left out.")] = None,
+    length: Annotated[str | None, typer.Option(metavar="M[,M]", help="Lengths of the main cable [m].")] = None,
+    heave_period: Annotated[
+        str | None, typer.Option(metavar="S[,S]", help="Also a straight tow under a metre of heave [s].")
+    ] = None,
+    claims: Annotated[bool, typer.Option("--claims", help="The sweeps that answer the paper's claims.")] = False,
+    quiet: Quiet = False,
+) -> None:
+    """Turn with one to three parts: heave, depth, tension."""
+    from ident.speeds import parse_speeds
+
+    given = (speed, radius, turns, parts, length, heave_period)
+    if claims and (u_turn or any(text is not None for text in given)):
+        raise InvalidInput("--claims has sweeps of its own; leave out the options of the turn.")
+    speeds = () if speed is None else parse_speeds(speed)
+    radii = options.listed("--radius", radius, float)
+    circles = options.listed("--turns", turns, float)
+    counts = options.listed("--parts", parts, int)
+    lengths = options.listed("--length", length, float)
+    periods = options.listed("--heave-period", heave_period, float)
+    configuration = options.load(name)
+    from ident.studies import turn as study
+
+    with progress(quiet=quiet) as report:
+        if claims:
+            result = study.answer_claims(configuration, out=out, progress=report)
+        else:
+            result = study.turn(
+                configuration,
+                speeds=speeds,
+                radii=radii,
+                turns=circles,
+                u_turn=u_turn,
+                parts=counts,
+                lengths=lengths,
+                heave_periods=periods,
+                out=out,
+                progress=report,
+            )
+    write_notes(result.notes)
+    write_table(result.table)
+    typer.echo(f"{result.folder / 'report.md'} written.")
+
+
+@app.command()
+def compare(
+    names: Annotated[
+        list[str] | None, typer.Argument(metavar="[NAME|FILE]...", help="Configurations; three built in if left out.")
+    ] = None,
+    out: Out = Path("compare"),
+    quiet: Quiet = False,
+) -> None:
+    """Compare the simulators over speed and angle."""
+    configurations = [options.load(name) for name in names or options.COMPARED]
+    from ident.studies import compare as study
+
+    with progress(quiet=quiet) as report:
+        result = study.compare(configurations, out=out, progress=report)
+    write_table(result.table)
+    typer.echo(f"{result.folder / 'report.md'} written.")
+
+
+@app.command()
+def bench(
+    names: Annotated[
+        list[str] | None, typer.Argument(metavar="[NAME|FILE]...", help="Configurations; two built in if left out.")
+    ] = None,
+    out: Out = Path("bench"),
+    quiet: Quiet = False,
+) -> None:
+    """Measure error against run time, also of MoorDyn."""
+    configurations = [options.load(name) for name in names or options.BENCHED]
+    from ident.studies import bench as study
+
+    with progress(quiet=quiet) as report:
+        result = study.bench(configurations, out=out, progress=report)
+    write_table(result.table)
+    typer.echo(f"{result.folder / 'report.md'} written.")
 
 
 @app.command()
@@ -312,31 +389,6 @@ def _execute(arguments: list[str]) -> None:
     command = typer.main.get_command(app)
     with command.make_context("cable-ident", arguments) as context:
         command.invoke(context)
-
-
-def _load(name: str) -> "Configuration":
-    from ident.configuration import load
-
-    return load(name)
-
-
-def _models(names: str) -> tuple[str, ...]:
-    from ident.configuration import model_names
-
-    return model_names([name.strip() for name in names.split(",")])
-
-
-def _within(option: str, value: float | None, quantity: Quantity) -> None:
-    if value is not None and not quantity.holds(value):
-        unit = "" if quantity.unit == "-" else f" {quantity.unit}"
-        raise InvalidInput(f"{option} must be {quantity.bound_text}{unit}, but it is {value:g}{unit}.")
-
-
-def _apart(out: Path, *inputs: Path) -> None:
-    """Refuse to write a result over one of the files it is made from."""
-    for path in inputs:
-        if path.exists() and out.exists() and out.samefile(path):
-            raise InvalidInput(f"--out {out} is one of the files to read; give another name.")
 
 
 if __name__ == "__main__":

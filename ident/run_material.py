@@ -14,6 +14,7 @@ from ident.manifest import manifest
 from ident.run_records import CURRENT, IDENTIFICATION, MEASURED, TRUTH, Records
 from ident.scores import parameters_table
 from ident.series import measured_series, truth_series
+from ident.simulators import describe_chain
 from ident.truth import Verification
 from models import reduced
 from models.reduced import Response
@@ -50,7 +51,7 @@ def run_material(
         description=_sentence(configuration),
         configuration=scene.configuration_table(configuration),
         configuration_text=configuration.text,
-        left_out=scene.left_out(configuration),
+        left_out=scene.left_out(configuration, chain=True),
         unused=scene.unused(configuration, configuration.unused),
         input_note=_input_note(configuration, result, seed),
         truth_note=_truth_note(configuration, check),
@@ -137,9 +138,12 @@ def run_material(
                 "steps": result.steps,
             },
             verification={
-                "simulator": "spectral" if check.links is None else "fine inertial chain",
-                "links": check.links,
-                "error_m_s": check.error,
+                "simulator": "link-joint",
+                "links": check.chain.links,
+                "steps": check.chain.steps,
+                "error_m_s": check.chain.error,
+                "energy_imbalance": check.chain.imbalance,
+                "slack_events": len(check.chain.slack),
                 "coefficients": check.changes,
             },
         ),
@@ -166,7 +170,7 @@ def _series(
             check.truth,
             responses[TRUTH],
             description=f"A recorded-style manoeuvre ({kind}, T 6.2), the vehicle as the truth has it, without noise.",
-            label="vehicle, fine chain",
+            label="vehicle, link-joint chain",
         ),
         measured_series(
             cases[MEASURED],
@@ -183,7 +187,7 @@ def _series(
             responses[CURRENT],
             description=f"The same tow in a current of {configuration.verification.current_speed:g} m/s, which no "
             "reduced model knows of; beside the others, without a bar.",
-            label="vehicle, fine chain in a current",
+            label="vehicle, link-joint chain in a current",
         ),
     ]
 
@@ -234,19 +238,20 @@ def _input_note(configuration: Configuration, result: SpectralResult, seed: int)
 
 
 def _truth_note(configuration: Configuration, check: Verification) -> str:
-    changes = ", ".join(f"{name} {100.0 * (factor - 1.0):+.0f} %" for name, factor in check.changes.items())
-    slant = f"{math.degrees(check.slant):.0f} degrees"
-    if check.links is not None:
-        maker = f"a fine inertial chain of {check.links} links with a kernel of its own"
-        doubt = f"its angles are taken as small (the static cable leans by at most {slant})"
-    else:
-        maker = "the spectral simulator, because the cable leans too far for the fine chain or its body pitches"
-        doubt = f"so the simulator itself is not put to the test (the static cable leans by up to {slant})"
-    error = "no error estimate" if check.error is None else f"estimated error {check.error:.1e} m/s RMS"
+    stiffness = f"EA {configuration.tow.cable.axial_stiffness:.3g} N"
+    names = ", ".join(part.name for part in configuration.tails)
+    tails = (
+        f" The truth tows {names} as well, which the models do not know of: what they do to the vehicle is part of "
+        "the errors."
+        if names
+        else ""
+    )
     return (
-        f"Interim truth: {maker} ({error}), not an independent three-dimensional simulator and no record from the "
-        f"sea; {doubt}, the motion is planar. Its coefficients differ from those that the models were fitted with: "
-        f"{changes}. Sensors: a fix every "
+        "The truth is a run of the link-joint simulator, a nonlinear three-dimensional chain of elastic links "
+        f"({stiffness}) that holds at any angle of the cable: {describe_chain(check.chain)} It shares the description "
+        "of the system with the spectral simulator that the models were fitted to, but neither its equations nor its "
+        f"stepper; it is no record from the sea.{tails} Its coefficients differ from those that the models were "
+        f"fitted with: {check.changed}. Sensors: a fix every "
         f"{configuration.sensor.fix_interval:g} s with {configuration.sensor.fix_sigma:g} m of noise, "
         f"{100.0 * configuration.sensor.dropout_fraction:g} % dropouts in runs, an offset of "
         f"{configuration.sensor.offset:g} m; velocity by a Savitzky-Golay differentiator over "

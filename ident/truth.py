@@ -1,6 +1,5 @@
 """The records of a run: made with the reference simulator to identify on, and with a changed system to verify on."""
 
-import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,16 +8,13 @@ from data_synth import inputs
 from data_synth.sensors import measure
 from data_synth.ships import standard_input
 from ident.configuration import Configuration
-from models import fine_chain, spectral
+from models import link_joint, spectral
 from models.current import Current
 from models.drive import Start
-from models.statics import static_shape
+from models.link_joint import LinkJointResult
 from models.tow import Tow
+from models.towed_system import Part, TowedSystem
 from models.trace import Trace
-from models.vehicle import Towfish
-
-#: Largest angle of the static cable from the vertical for which a chain of small angles may stand for the truth [rad].
-LARGEST_SLANT = math.radians(15.0)
 
 #: Streams of random numbers: each use has its own, so that one does not move another.
 INPUT, COEFFICIENTS, SENSOR, SEARCH = range(4)
@@ -74,29 +70,32 @@ def reference_run(
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Verification:
-    """The verification records of a run: ship, true vehicle, and the truth in a current.
+    """The verification records of a run: the ship, the run that is the truth, and the vehicle in a current.
 
-    `changes` are the factors on the drag and mass coefficients, `links` those of the fine chain or ``None`` where the
-    spectral simulator stands in, `slant` the static cable's largest angle from the vertical [rad], `error` the truth's
-    own error estimate [m/s], ``None`` where its resolution was given.
+    `changes` are the factors on the drag and added-mass coefficients.
     """
 
     ship: Trace
-    truth: Trace
+    chain: LinkJointResult
     in_current: Trace
     changes: dict[str, float]
-    links: int | None
-    slant: float
-    error: float | None
+
+    @property
+    def truth(self) -> Trace:
+        """The vehicle as it truly moves."""
+        return self.chain.vehicle
+
+    @property
+    def changed(self) -> str:
+        """The changes in words."""
+        return ", ".join(f"{name} {100.0 * (factor - 1.0):+.0f} %" for name, factor in self.changes.items())
 
 
 def verification(configuration: Configuration, seed: int) -> Verification:
-    """Recorded-style traces of T 6.2 from a fine inertial chain with changed coefficients.
+    """Recorded-style traces of T 6.2 from the link-joint chain with changed coefficients, parts behind included.
 
-    The chain hangs: where the static cable leans by more than 15 degrees, or its body pitches, the spectral simulator
-    with the same changes takes its place.
-
-    Every drag and added-mass coefficient is raised or lowered by the configured share, the sign drawn from the seed.
+    The drag and added-mass coefficients of all cables and of all bodies are raised or lowered by the configured share,
+    the signs drawn from the seed.
     """
     settings = configuration.verification
     ship = towed(configuration.tow, inputs.ship_trace(configuration.manoeuvre, stream(seed, INPUT)))
@@ -104,28 +103,16 @@ def verification(configuration: Configuration, seed: int) -> Verification:
     names = ("cable normal drag", "cable added mass", "vehicle drag", "vehicle added mass")
     signs = rng.choice([-1.0, 1.0], len(names))
     changes = dict(zip(names, (1.0 + settings.coefficient_change * signs).tolist(), strict=True))
-    changed = _changed(configuration.tow, changes)
-    flowing = replace(changed, current=_added(changed.current, settings.current_speed))
-    slant = max(float(np.abs(static_shape(tow).phi - 0.5 * math.pi).max()) for tow in (changed, flowing))
-    links = settings.links if slant <= LARGEST_SLANT and not isinstance(changed.vehicle, Towfish) else None
-    error: float | None
-    if links is not None:
-        chain = fine_chain.simulate(changed, ship, links=links)
-        truth, error = chain.vehicle, chain.error
-        in_current = fine_chain.simulate(flowing, ship, links=links).vehicle
-    else:
-        reference = reference_run(replace(configuration, tow=changed), ship)
-        truth, error = reference.vehicle, reference.error
-        in_current = reference_run(replace(configuration, tow=flowing), ship).vehicle
-    return Verification(
-        ship=ship,
-        truth=truth,
-        in_current=in_current,
-        changes=changes,
-        links=links,
-        slant=slant,
-        error=error,
-    )
+    own = configuration.system
+    system = replace(own, parts=tuple(_changed(part, changes) for part in own.parts))
+    flowing = replace(system, current=_added(system.current, settings.current_speed))
+
+    def run(tow: TowedSystem, companion: bool) -> LinkJointResult:
+        return link_joint.simulate(
+            tow, ship, links=settings.links, tolerance=settings.tolerance, start="rest", companion=companion
+        )
+
+    return Verification(ship=ship, chain=run(system, True), in_current=run(flowing, False).vehicle, changes=changes)
 
 
 def fixes(configuration: Configuration, vehicle: Trace, seed: int) -> Trace:
@@ -133,28 +120,22 @@ def fixes(configuration: Configuration, vehicle: Trace, seed: int) -> Trace:
     return measure(vehicle, configuration.sensor, stream(seed, SENSOR))
 
 
-def _changed(tow: Tow, factor: dict[str, float]) -> Tow:
+def _changed(part: Part, factor: dict[str, float]) -> Part:
     cable = replace(
-        tow.cable,
-        normal_drag_coefficient=tow.cable.normal_drag_coefficient * factor["cable normal drag"],
-        added_mass=tow.cable.added_mass * factor["cable added mass"],
+        part.cable,
+        normal_drag_coefficient=part.cable.normal_drag_coefficient * factor["cable normal drag"],
+        added_mass=part.cable.added_mass * factor["cable added mass"],
     )
-    drag, mass = factor["vehicle drag"], factor["vehicle added mass"]
-    body = tow.vehicle
-    if isinstance(body, Towfish):
-        vehicle: Towfish = replace(
-            body,
-            drag_coefficient=body.drag_coefficient * drag,
-            added_mass_p=body.added_mass_p * mass,
-            added_mass_q=body.added_mass_q * mass,
-        )
-        return replace(tow, cable=cable, vehicle=vehicle)
-    point = replace(body, drag_coefficient=body.drag_coefficient * drag, added_mass=body.added_mass * mass)
-    return replace(tow, cable=cable, vehicle=point)
+    if part.body is None:
+        return replace(part, cable=cable)
+    mass = {
+        name: getattr(part.body, name) * factor["vehicle added mass"]
+        for name in ("added_mass_surge", "added_mass_sway", "added_mass_heave")
+    }
+    drag = part.body.drag_coefficient * factor["vehicle drag"]
+    return replace(part, cable=cable, body=replace(part.body, drag_coefficient=drag, **mass))
 
 
 def _added(current: Current | None, speed: float) -> Current:
     """A current with the same speed more at every depth."""
-    if current is None:
-        return Current.uniform(speed)
-    return Current(depth=current.depth, speed=current.speed + speed)
+    return Current.uniform(speed) if current is None else current.plus(speed)

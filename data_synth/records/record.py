@@ -30,6 +30,8 @@ class Record:
         (n,) [m], down, as measured; NaN where missing.
     tension
         (n, 2) [N] at the top and the bottom of the cable; NaN where missing.
+    bodies
+        Further bodies, from the second on; (n,) samples each, NaN rows where there is no fix.
     notes
         What was counted, repaired or found suspect, one sentence each.
     source
@@ -41,14 +43,16 @@ class Record:
     vehicle: Trace | None = None
     depth: Floats | None = None
     tension: Floats | None = None
+    bodies: tuple[Trace, ...] = ()
     notes: tuple[str, ...] = ()
-    source: Literal["trace", "deep-tow"] = "trace"
+    source: Literal["trace", "deep-tow", "nmea", "creel"] = "trace"
 
     def __post_init__(self) -> None:
         n = len(self.ship)
         if not self.ship.valid.all():
             raise InvalidInput(f"Record {self.name} needs the ship's position at every time.")
-        if self.vehicle is not None and not np.array_equal(self.vehicle.t, self.ship.t):
+        vehicles = self.bodies if self.vehicle is None else (self.vehicle, *self.bodies)
+        if not all(np.array_equal(each.t, self.ship.t) for each in vehicles):
             raise InvalidInput(f"Record {self.name} needs ship and vehicle on the same times; use join().")
         for name, shape in (("depth", (n,)), ("tension", (n, 2))):
             value = getattr(self, name)

@@ -18,7 +18,9 @@ DEPTH = "depth_m"
 TENSION = ("tension_top_N", "tension_bottom_N")
 COLUMNS = (TIME, *SHIP, *VEHICLE, DEPTH, *TENSION)
 
-_BODY = re.compile(r"body_[1-9][0-9]*_[xyz]_m")
+#: The vehicle is the first body; the others are numbered from here on.
+SECOND = 2
+_BODY = re.compile(r"body_([1-9][0-9]*)_[xyz]_m")
 
 
 def trace_record(table: Table) -> Record:
@@ -30,13 +32,13 @@ def trace_record(table: Table) -> Record:
         A column is unknown, doubled or missing; a cell is not a finite number; time is missing or does not
         increase; the ship's track has a long gap or a jump. Says file and line.
     """
-    bodies = _checked_header(table)
+    numbers = _checked_header(table)
     t = _times(table)
     ship = _positions(table, SHIP)
     notes = []
-    if bodies:
-        columns = "column" if len(bodies) == 1 else "columns"
-        notes.append(f"{len(bodies)} {columns} of further bodies not used: {', '.join(bodies)}.")
+    if numbers:
+        columns = ", ".join(f"body_{number}" for number in numbers)
+        notes.append(f"{len(numbers)} further bod{'y' if len(numbers) == 1 else 'ies'} not scored: {columns}.")
     kept, ship, repairs = repaired_ship_track(t, ship, table.at)
     t = t[kept]
     vehicle, depth = _vehicle(table, kept)
@@ -53,17 +55,22 @@ def trace_record(table: Table) -> Record:
         vehicle=None if vehicle is None else Trace(t=t, position=vehicle),
         depth=depth,
         tension=tension,
+        bodies=tuple(Trace(t=t, position=_positions(table, body_columns(number))[kept]) for number in numbers),
         notes=(*repairs, *notes),
     )
 
 
-def _checked_header(table: Table) -> list[str]:
-    """Check the column names; those of further bodies are handed back."""
+def body_columns(number: int) -> tuple[str, str, str]:
+    """The columns of a further body."""
+    return f"body_{number}_x_m", f"body_{number}_y_m", f"body_{number}_z_m"
+
+
+def _checked_header(table: Table) -> list[int]:
+    """Check the column names; the numbers of the further bodies are handed back, in order."""
     for name in table.header:
         if table.header.count(name) > 1:
             raise InvalidInput(f"{table.path}: the column {name!r} is there {table.header.count(name)} times.")
-    bodies = [name for name in table.header if _BODY.fullmatch(name)]
-    unknown = [name for name in table.header if name not in COLUMNS and name not in bodies]
+    unknown = [name for name in table.header if name not in COLUMNS and not _BODY.fullmatch(name)]
     if unknown:
         raise InvalidInput(
             f"{table.path}: unknown columns {', '.join(map(repr, unknown))}; a trace file has "
@@ -72,11 +79,12 @@ def _checked_header(table: Table) -> list[str]:
     for name in (TIME, SHIP[0]):
         if name not in table.header:
             raise InvalidInput(f"{table.path}: the column {name} is needed, but there is only {table.header}.")
-    if VEHICLE[0] not in table.header:
-        for name in VEHICLE[1:]:
-            if name in table.header:
-                raise InvalidInput(f"{table.path}: the column {VEHICLE[0]} is needed beside {name}.")
-    return bodies
+    numbers = sorted({int(found[1]) for name in table.header if (found := _BODY.fullmatch(name))})
+    for x, *others in (VEHICLE, *(body_columns(number) for number in numbers)):
+        for name in others:
+            if name in table.header and x not in table.header:
+                raise InvalidInput(f"{table.path}: the column {x} is needed beside {name}.")
+    return numbers
 
 
 def _times(table: Table) -> Floats:

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from data_synth.records.record import Record
-from data_synth.records.trace_file import DEPTH, SHIP, TENSION, TIME, VEHICLE
+from data_synth.records.trace_file import DEPTH, SECOND, SHIP, TENSION, TIME, VEHICLE, body_columns
 from models.quantity import InvalidInput
 from models.trace import Floats
 
@@ -37,6 +37,9 @@ def write_record(record: Record, path: str | Path, *, digits: int | None = None)
     if record.tension is not None:
         header += TENSION
         columns += [*record.tension.T]
+    for number, body in enumerate(record.bodies, start=SECOND):
+        header += body_columns(number)
+        columns += [*body.position.T]
     rows = np.column_stack(columns).tolist()
     write = repr if digits is None else f"{{:.{digits}g}}".format
     lines = [",".join(header), *(",".join(write(x) if math.isfinite(x) else "" for x in row) for row in rows), ""]

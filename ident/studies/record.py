@@ -1,4 +1,4 @@
-"""Synthetic records: any input of the ship and the winch, answered by the reference simulator."""
+"""Synthetic records: any input of the ship and the winch, answered by the simulator that it needs."""
 
 from dataclasses import fields, replace
 from pathlib import Path
@@ -7,25 +7,36 @@ from typing import Any
 import numpy as np
 
 from data_synth import inputs
-from data_synth.records import join, read_record, write_record
+from data_synth.records import Record, join, read_record, write_record
 from data_synth.ships import sample_times, superpose
 from ident.configuration import Configuration
 from ident.places import new_file
 from ident.sections import INPUTS
 from ident.settings import Winch, WinchDepth
-from ident.studies.simulate import describe
-from ident.truth import INPUT, fixes, reference_run, stream, towed, verification
+from ident.simulators import Reference, answer, describe_chain, needed, recorded
+from ident.truth import INPUT, fixes, stream, towed, verification
+from models.drive import Start
 from models.quantity import InvalidInput
 from models.spectral import DepthWinch, Payout
 from models.trace import Trace
 
 #: Kinds beside those of the configuration's [inputs] sections.
 STANDARD, RECORDED_STYLE = "standard", "recorded-style"
+KNOWN = (STANDARD, RECORDED_STYLE, *INPUTS)
+#: Kinds of a ship that is under way from the first instant.
+UNDER_WAY = {"straight", "full-turn", "u-turn", "speed-changes", "zig-zag", "waypoints"}
 _WINCHES = {"winch", "winch-depth"}
 
 
 def record(
-    configuration: Configuration, *, kind: str, duration: float | None, sensor: bool, seed: int, out: Path
+    configuration: Configuration,
+    *,
+    kind: str,
+    duration: float | None,
+    sensor: bool,
+    seed: int,
+    out: Path,
+    reference: Reference | None,
 ) -> str:
     """Make a record and write it; says in a sentence what was done.
 
@@ -37,59 +48,77 @@ def record(
         Length of every made input [s], as configured when left out.
     sensor
         Write what the sensor sees of the vehicle instead of its true track.
+    reference
+        The simulator; by what the input needs when left out: the link-joint chain for manoeuvres under way, tracks off
+        a plane and systems of several parts, the spectral simulator for the rest.
 
     Raises
     ------
     InvalidInput
-        An unknown kind, two winches, or a place that cannot be written.
+        An unknown kind, two winches, a duration for a kind that has none, or a place that cannot be written.
     NumericalFailure
         The simulation fails.
     """
     with new_file(out) as temporary:
-        if kind == RECORDED_STYLE and duration is not None:
-            configuration = replace(configuration, manoeuvre=replace(configuration.manoeuvre, duration=duration))
         if kind == RECORDED_STYLE:
-            check = verification(configuration, seed)
-            ship, vehicle = check.ship, check.truth
-            changes = ", ".join(f"{name} {100.0 * (factor - 1.0):+.0f} %" for name, factor in check.changes.items())
-            maker = "the spectral simulator" if check.links is None else f"a fine chain of {check.links} links"
-            words = f"the truth of the verification, {maker} with {changes}."
+            found, words = _truth(configuration, duration, seed, reference)
         else:
             kinds = [kind] if Path(kind).is_file() else kind.split("+")
             ship, winch = _motion(configuration, kinds, duration, seed)
-            result = reference_run(configuration, ship, winch=winch)
-            vehicle, words = result.vehicle, describe(result)
+            # A file's ship is under way too; to the motions of the other kinds the tow's own way is added.
+            under_way = not set(kinds) <= set(KNOWN) - UNDER_WAY
+            track = Record(name=kind, ship=ship if under_way else towed(configuration.tow, ship))
+            chosen = reference or ("link-joint" if UNDER_WAY & set(kinds) else needed(configuration, track))
+            start: Start = "steady" if under_way else "rest"
+            found, words = answer(configuration, track, chosen, start=start, winch=winch)
         if sensor:
-            vehicle = fixes(configuration, vehicle, seed)
-            words = f"fixes every {configuration.sensor.fix_interval:g} s of " + words
-        write_record(join(configuration.name, ship, vehicle), temporary)
+            assert found.vehicle is not None
+            seen = fixes(configuration, found.vehicle, seed)
+            found = join(configuration.name, found.ship, seen)
+            words = f"fixes every {configuration.sensor.fix_interval:g} s of {words}"
+        write_record(found, temporary)
     return f"{out} written (seed {seed}): {words}"
+
+
+def _truth(
+    configuration: Configuration, duration: float | None, seed: int, reference: Reference | None
+) -> tuple[Record, str]:
+    """The verification's truth, as a run makes it."""
+    if reference == "spectral":
+        raise InvalidInput(
+            f"The input {RECORDED_STYLE} alone is the truth of a verification, which the link-joint simulator makes; "
+            "leave out --reference spectral."
+        )
+    if duration is not None:
+        configuration = replace(configuration, manoeuvre=replace(configuration.manoeuvre, duration=duration))
+    check = verification(configuration, seed)
+    words = f"the truth of the verification, {check.changed}, by the link-joint simulator with "
+    return recorded(configuration.name, check.ship, check.chain.bodies), words + describe_chain(check.chain)
 
 
 def _motion(
     configuration: Configuration, kinds: list[str], duration: float | None, seed: int
 ) -> tuple[Trace, Payout | DepthWinch | None]:
     """The sum of all inputs: the ship's track, and the winch where one is asked for."""
-    known = (STANDARD, RECORDED_STYLE, *INPUTS)
     tracks: list[Trace] = []
     winches: list[Payout | DepthWinch] = []
     sample: float | None = None
     for place, kind in enumerate(kinds):
         if kind in _WINCHES:
-            settings = _lasting(configuration.inputs[kind], duration)
+            settings = _lasting(kind, configuration.inputs[kind], duration)
             winches.append(_winch(settings))
             sample = settings.sample
             length = settings.duration
-        elif kind in known:
+        elif kind in KNOWN:
             settings = {STANDARD: configuration.input, RECORDED_STYLE: configuration.manoeuvre}.get(kind)
             settings = configuration.inputs[kind] if settings is None else settings
             rng = stream(seed, INPUT) if place == 0 else np.random.default_rng([seed, INPUT, place])
-            tracks.append(inputs.ship_trace(_lasting(settings, duration), rng))
+            tracks.append(inputs.ship_trace(_lasting(kind, settings, duration), rng))
         elif kind and Path(kind).exists():
             tracks.append(_track(Path(kind), duration))
         else:
             raise InvalidInput(
-                f"The input {kind!r} is neither a file nor one of {', '.join(known)}; join several with +."
+                f"The input {kind!r} is neither a file nor one of {', '.join(KNOWN)}; join several with +."
             )
     if len(winches) > 1:
         raise InvalidInput("A record has one winch, but winch and winch-depth were both given; drop one.")
@@ -98,12 +127,19 @@ def _motion(
         t = sample_times(length, sample)
         tracks.append(Trace.along_x(t, np.zeros(t.size)))
     ship = tracks[0] if len(tracks) == 1 else superpose(*tracks)
-    return towed(configuration.tow, ship), winches[0] if winches else None
+    return ship, winches[0] if winches else None
 
 
-def _lasting(settings: Any, duration: float | None) -> Any:
-    has = any(field.name == "duration" for field in fields(settings))
-    return replace(settings, duration=duration) if duration is not None and has else settings
+def _lasting(kind: str, settings: Any, duration: float | None) -> Any:
+    """The settings with another duration."""
+    if duration is None:
+        return settings
+    if not any(field.name == "duration" for field in fields(settings)):
+        raise InvalidInput(
+            f"The input {kind} has no duration: it lasts as long as its way takes. Leave out --duration, or change "
+            f"[inputs.{kind}]."
+        )
+    return replace(settings, duration=duration)
 
 
 def _winch(settings: Winch | WinchDepth) -> Payout | DepthWinch:
@@ -125,10 +161,8 @@ def _winch(settings: Winch | WinchDepth) -> Payout | DepthWinch:
 
 
 def _track(path: Path, duration: float | None) -> Trace:
-    """A ship's track from a file, from its start and as long as asked, in a plane."""
+    """A ship's track from a file, from its start and as long as asked."""
     ship = read_record(path).ship
-    if np.ptp(ship.position[:, 1]) > 1e-6:
-        raise InvalidInput(f"{path}: a record is made along x, but this track has y too; use `simulate` for it.")
     if duration is None:
         return ship
     lasts = float(ship.t[-1] - ship.t[0])

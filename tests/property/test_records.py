@@ -35,7 +35,12 @@ def test_a_written_record_reads_back_to_the_bit(ship: Trace, data: st.DataObject
     tension = data.draw(arrays(float, (n, 2), elements=numbers))
     tension[data.draw(arrays(bool, n))] = np.nan
     record = Record(
-        name="tow", ship=ship, vehicle=Trace(t=ship.t, position=vehicle), depth=-vehicle[:, 2], tension=tension
+        name="tow",
+        ship=ship,
+        vehicle=Trace(t=ship.t, position=vehicle),
+        depth=-vehicle[:, 2],
+        tension=tension,
+        bodies=tuple(Trace(t=ship.t, position=part * vehicle) for part in (0.5, -2.0)),
     )
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "tow.csv"
@@ -47,6 +52,8 @@ def test_a_written_record_reads_back_to_the_bit(ship: Trace, data: st.DataObject
         (again.vehicle.position, vehicle),
         (again.depth, record.depth),
         (again.tension, record.tension),
+        (again.bodies[0].position, 0.5 * vehicle),
+        (again.bodies[1].position, -2.0 * vehicle),
     ):
         assert np.array_equal(one, other, equal_nan=True)
 

@@ -211,7 +211,7 @@ def run_material(**changes: object) -> RunMaterial:
         "left_out": [("strumming", "its amplification law is for steady towing")],
         "unused": [("water.current_m_s", "the scene has no current")],
         "input_note": "Seeded normal sequence (seed 0), six biases, filtered at 0.06 rad/s, 0.50 m/s at most.",
-        "truth_note": "The truth here is interim: a chain of 60 links with its coefficients changed by 5 %.",
+        "truth_note": "The truth here is a chain of 60 links with its coefficients changed by 5 %.",
         "records": [series(name, i) for i, name in enumerate(GROWTH)],
         "scores": score_rows(list(GROWTH)),
         "parameters": parameters,
@@ -493,12 +493,12 @@ def test_parameters_intervals_and_totals_are_in_their_tables(run_text: str) -> N
     ]
 
 
-def test_guesses_omissions_floor_and_interim_truth_are_said(run_text: str) -> None:
+def test_guesses_omissions_floor_and_truth_are_said(run_text: str) -> None:
     assert "One value of 5 is a guess" in run_text
     assert re.search(r"added_mass_kg +\| 45 +\| kg +\| guess", run_text)
     assert "* **strumming**: its amplification law is for steady towing" in run_text
     assert "* `water.current_m_s`: the scene has no current" in run_text
-    assert "The truth here is interim" in run_text
+    assert "The truth here is a chain of 60 links" in run_text
     assert "verification-measured: 0.0210 m/s and 1.20 m" in run_text
     assert "r_veh and r (-0.990)" in run_text
     assert "versions: numpy" in run_text

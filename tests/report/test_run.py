@@ -180,7 +180,17 @@ def test_numbers_of_the_report_are_those_of_the_tables(result: Path) -> None:
 
 def test_report_says_what_stands_for_the_truth_and_what_is_a_guess(result: Path) -> None:
     page = (result / "report.md").read_text()
-    assert "Interim truth: a fine inertial chain of 60 links" in page
+    truth = page.split("# Verification\n", 1)[1].split("#", 1)[0]
+    assert "The truth is a run of the link-joint simulator, a nonlinear three-dimensional chain" in truth
+    assert "60 links" in truth
+    assert "no link goes slack" in truth
+    said = re.search(r"estimated error (\S+) m/s RMS", truth)
+    assert said is not None
+    made = json.loads((result / "manifest.json").read_text())["verification"]
+    assert float(said[1]) == pytest.approx(made["error_m_s"], rel=0.05)
+    assert made["links"] == [60]
+    for name, factor in made["coefficients"].items():
+        assert f"{name} {100.0 * (factor - 1.0):+.0f} %" in truth
     assert "One value of" in page
     assert "is a guess" in page
     assert page_table(page, "Configuration").reset_index().iloc[:, -1].tolist().count("guess") == 1
@@ -279,6 +289,46 @@ def test_a_place_that_holds_something_else_is_refused(
     assert error.count("\n") == 1
     assert kept.read_text() == "mine"
     assert {path.name for path in tmp_path.iterdir()} == {"short.toml", "out"}
+
+
+@pytest.mark.slow
+def test_a_tow_with_a_part_behind_is_verified_with_it(tmp_path: Path) -> None:
+    tail = """
+[tow]
+speed_m_s = 1.0
+
+[[tail]]
+name = "towed-body"
+[tail.cable]
+length_m = 100.0
+diameter_m = 0.03
+mass_per_length_kg_m = 0.725
+weight_in_water_N_m = 0.0
+axial_stiffness_N = 2e6
+added_mass_kg_m = 0.725
+normal_drag_coefficient = 1.2
+tangential_drag_coefficient = 0.02
+[tail.body]
+weight_N = 1323.9
+buoyancy_N = 1323.9
+mass_kg = 135.0
+added_mass_surge_kg = 135.0
+added_mass_sway_kg = 135.0
+added_mass_heave_kg = 135.0
+area_surge_m2 = 1.0
+area_sway_m2 = 1.0
+area_heave_m2 = 1.0
+drag_coefficient = 1.2
+
+[link-joint]
+links = 30
+"""
+    out = make(tmp_path, "--models", "massless-2-quadratic", text=SHORT + tail)
+    page = (out / "report.md").read_text()
+    assert "the models are identified without towed-body, which the verification truth tows" in page
+    assert "The truth tows towed-body as well" in page
+    assert "* `link-joint.links`: no part of this study reads it" in page
+    assert json.loads((out / "manifest.json").read_text())["verification"]["links"] == [60, 8]
 
 
 @pytest.mark.slow

@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import re
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,7 @@ from ident import thesis
 from ident.cli import main
 from ident.configuration import Configuration, load
 from ident.studies import gallery
-from models import reduced
+from models import link_joint, reduced
 from models.statics import midpoint_travel_time, static_shape, travel_time
 
 TOW_FILES = Path(__file__).resolve().parents[2].parent / "shared" / "records" / "deep-tow-camera"
@@ -136,10 +137,97 @@ def test_record_of_every_kind(kind: str, cable: str, capsys: Capture) -> None:
     assert record.depth is not None
     np.testing.assert_allclose(record.depth, -record.vehicle.position[:, 2])
     assert record.depth == pytest.approx(740.0, abs=3.0)
-    assert (record.tension is None) == (kind == "recorded-style")  # the fine chain has none
+    assert record.tension is not None
+    assert ("link-joint" in said) == (kind == "recorded-style")
     ship = record.ship.position
     assert bool(ship[:, 0].any()) == (kind not in ("winch", "winch-depth"))
     assert bool(ship[:, 2].any()) == ("sea" in kind)
+
+
+MANOEUVRES = """
+[inputs.straight]
+duration_s = 60.0
+[inputs.full-turn]
+speed_m_s = 1.0
+radius_m = 60.0
+turns = 0.2
+approach_s = 30.0
+exit_s = 30.0
+[inputs.u-turn]
+speed_m_s = 1.0
+radius_m = 40.0
+approach_s = 10.0
+exit_s = 10.0
+[inputs.speed-changes]
+duration_s = 60.0
+times_s = [20.0]
+speeds_m_s = [1.0, 0.5]
+rise_s = 20.0
+[inputs.zig-zag]
+speed_m_s = 1.0
+radius_m = 40.0
+leg_s = 30.0
+legs = 2
+[inputs.waypoints]
+speed_m_s = 1.0
+points_x_m = [0.0, 100.0, 100.0]
+points_y_m = [0.0, 0.0, 100.0]
+radius_m = 40.0
+
+[tow]
+speed_m_s = 0.3
+"""
+
+
+@pytest.mark.parametrize("kind", ["straight", "full-turn", "u-turn", "speed-changes", "zig-zag", "waypoints"])
+def test_record_of_a_manoeuvre_is_the_chains_from_the_ships_own_speed(kind: str, cable: str, capsys: Capture) -> None:
+    """The tow's own way is not added: the ship is under way already."""
+    Path("turns.toml").write_text(CABLE + MANOEUVRES)
+    ok("record", "./turns.toml", "--input", kind, "--out", "r.csv")
+    assert "the link-joint simulator with" in capsys.readouterr().out
+    record = read_record("r.csv")
+    assert record.vehicle is not None
+    speed = 3.0867 if kind == "straight" else 1.0
+    for trace in (record.ship, record.vehicle):
+        assert trace.spline(0.0, 1)[:2] == pytest.approx([speed, 0.0], abs=0.01)
+    assert bool(np.ptp(record.ship.position[:, 1]) > 1.0) == (kind not in ("straight", "speed-changes"))
+    if kind in ("full-turn", "u-turn", "zig-zag", "waypoints"):
+        assert "has no duration" in refused(
+            capsys, "record", "./turns.toml", "--input", kind, "--duration", "60", "--out", "x.csv"
+        )
+
+
+def test_record_takes_the_simulator_that_the_input_needs_or_the_one_asked_for(cable: str, capsys: Capture) -> None:
+    t = np.arange(0.0, 121.0)
+    write_ship("bent.csv", t, 0.3 * t, 0.02 * np.maximum(t - 30.0, 0.0) ** 1.5)
+    write_ship("flat.csv", t, 0.3 * t, 0.4 * t)
+    for kind, name in (("bent.csv", "link-joint"), ("flat.csv", "spectral"), ("step", "spectral")):
+        ok("record", cable, "--input", kind, "--out", "r.csv")
+        assert f"the {name} simulator with" in capsys.readouterr().out
+    both = {}
+    for name in ("link-joint", "spectral"):
+        line = ("record", cable, "--input", "sinusoids", "--duration", "120", "--reference", name)
+        ok(*line, "--out", f"{name}.csv")
+        vehicle = read_record(f"{name}.csv").vehicle
+        assert vehicle is not None
+        both[name] = vehicle.position[:, 0]
+    assert np.ptp(both["spectral"]) > 1.0
+    np.testing.assert_allclose(both["link-joint"], both["spectral"], atol=0.02)
+    no = ("record", cable, "--input", "recorded-style", "--reference", "spectral", "--out", "x.csv")
+    assert "leave out --reference" in refused(capsys, *no)
+    no = ("record", cable, "--input", "winch-depth", "--reference", "link-joint", "--out", "x.csv")
+    assert "holds a depth" in refused(capsys, *no)
+
+
+def test_the_winch_pays_out_on_the_chain_too(cable: str) -> None:
+    Path("winch.toml").write_text(
+        CABLE + "\n[inputs.winch]\nduration_s = 200.0\ntimes_s = [20.0, 60.0]\nrates_m_s = [0.2, 0.0]\n"
+    )
+    depths = {}
+    for name in ("spectral", "link-joint"):
+        ok("record", "./winch.toml", "--input", "winch", "--reference", name, "--out", "r.csv")
+        depths[name] = read_record("r.csv").depth
+    np.testing.assert_allclose(depths["link-joint"], depths["spectral"], atol=0.05)
 
 
 def test_record_sums_its_inputs_and_takes_a_file(cable: str) -> None:
@@ -242,6 +330,64 @@ def test_simulate_refuses_a_track_that_turns_and_says_by_how_much(cable: str, ca
     assert 5.0 < amount < 30.0
     write_ship("jump.csv", t, np.where(t > 150.0, 100.0, 0.0))
     assert "jumps" in refused(capsys, "simulate", cable, "--ship", "jump.csv", "--out", "out.csv")
+
+
+def test_the_chain_follows_a_track_that_turns_and_writes_every_body(cable: str, capsys: Capture) -> None:
+    text = Path(cable).read_text()
+    tail = "[[tail]]\nname = 'fish'\n[tail.cable]\n" + text[text.index("[cable]") + 8 : text.index("[vehicle]")]
+    body = (
+        "[tail.body]\nweight_N = 500.0\nbuoyancy_N = 100.0\nmass_kg = 50.0\nadded_mass_surge_kg = 20.0\n"
+        "added_mass_sway_kg = 20.0\nadded_mass_heave_kg = 20.0\narea_surge_m2 = 0.1\narea_sway_m2 = 0.1\n"
+        "area_heave_m2 = 0.1\ndrag_coefficient = 1.2\n"
+    )
+    Path("two.toml").write_text(text + tail.replace("740.0", "100.0") + body)
+    t = np.arange(0.0, 201.0)
+    x, y = 5e5 + 80.0 * np.sin(t / 80.0), 6e6 + 80.0 * (1.0 - np.cos(t / 80.0))
+    write_ship("turn.csv", t, x, y, 0.2 * np.sin(0.6 * t))
+    line = ("--ship", "turn.csv", "--reference", "link-joint", "--start", "steady", "--links", "24")
+    ok("simulate", "./two.toml", *line, "--tolerance", "1e-3", "--out", "out.csv")
+    said = capsys.readouterr().out
+    told = r"the link-joint simulator with 24 \+ 4 links, \d+ steps; estimated error \S+ m/s RMS, energy balanced"
+    assert re.search(told, said)
+    record = read_record("out.csv")
+    assert record.vehicle is not None
+    assert record.tension is not None
+    assert record.tension.shape == (201, 2)
+    np.testing.assert_allclose(record.depth, -record.vehicle.position[:, 2])
+    (fish,) = record.bodies
+    assert np.linalg.norm(fish.position - record.vehicle.position, axis=1).max() < 101.0
+    assert (fish.position[:, 2] < record.vehicle.position[:, 2] - 50.0).all()
+    expected = link_joint.simulate(load("./two.toml").system, read_record("turn.csv").ship, links=24, tolerance=1e-3)
+    np.testing.assert_allclose(record.vehicle.position, expected.vehicle.position, atol=1e-5)
+    write_ship("straight.csv", t, 0.01 * t)
+    ok("simulate", "./two.toml", "--ship", "straight.csv", "--out", "one.csv")
+    assert "It tows the first part alone, without fish." in capsys.readouterr().out
+    assert read_record("one.csv").bodies == ()
+
+
+def test_a_slack_cable_is_told(cable: str, capsys: Capture) -> None:
+    t = np.arange(0.0, 61.0, 0.25)
+    write_ship("heave.csv", t, 0.0 * t, 0.0, 6.0 * (1.0 - np.exp(-((t / 10.0) ** 3))) * np.sin(1.2 * t))
+    line = ("--ship", "heave.csv", "--reference", "link-joint", "--links", "20", "--tolerance", "1e-2")
+    ok("simulate", cable, *line, "--out", "out.csv")
+    told = r"\d+ slack events?: vehicle at \d+\.\d s, \d+ m below its upper end, taut at \S+ s with \d+ N"
+    assert re.search(told, capsys.readouterr().out)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (("--reference", "link-joint", "--stepper", "implicit"), "leave out --stepper"),
+        (("--links", "20"), "leave out --links"),
+        (("--reference", "link-joint", "--links", "3"), "--links"),
+        (("--reference", "dense"), "--reference"),
+    ],
+)
+def test_options_of_the_other_simulator_are_refused(
+    options: tuple[str, ...], words: str, cable: str, capsys: Capture
+) -> None:
+    write_ship("ship.csv", np.arange(60.0), 0.1 * np.arange(60.0))
+    assert words in refused(capsys, "simulate", cable, "--ship", "ship.csv", "--out", "x.csv", *options)
 
 
 def test_steppers_agree(cable: str) -> None:

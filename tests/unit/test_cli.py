@@ -44,9 +44,23 @@ def called(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
 
         return study
 
-    for name in ("run", "simulate", "record", "fit", "verify", "step", "crossval", "gallery"):
+    for name in (
+        "run",
+        "simulate",
+        "record",
+        "fit",
+        "verify",
+        "step",
+        "crossval",
+        "turn",
+        "compare",
+        "bench",
+        "gallery",
+    ):
         module = types.ModuleType(f"ident.studies.{name}")
         setattr(module, name, noting(name))
+        if name == "turn":
+            setattr(module, "answer_claims", noting("claims"))  # noqa: B010
         monkeypatch.setitem(sys.modules, f"ident.studies.{name}", module)
         monkeypatch.setattr(studies, name, module, raising=False)
     return seen
@@ -108,6 +122,12 @@ def test_other_commands_hand_over_their_options(called: dict[str, Any], tmp_path
     assert (called["reference"], called["tolerance"], called["start"], called["stepper"]) == (
         ("spectral", None, "rest", "runge-kutta")
     )
+    assert called["links"] is None
+    chain = ["--reference", "link-joint", "--links", "9"]
+    assert main(["simulate", "autec-1200", "--ship", ship, "--out", out, *chain]) == 0
+    assert (called["reference"], called["links"], called["stepper"]) == ("link-joint", 9, None)
+    assert main(["record", "autec-1200", "--input", "u-turn", "--reference", "link-joint", "--out", out]) == 0
+    assert (called["kind"], called["reference"]) == ("u-turn", "link-joint")
     assert main(["record", "autec-1200", "--input", "standard+sea", "--duration", "60", "--sensor", "--out", out]) == 0
     assert (called["kind"], called["duration"], called["sensor"], called["seed"]) == ("standard+sea", 60.0, True, 0)
     line = ["fit", "autec-1200", "--record", ship, "--record", "b.csv", "--model", "massless-linear", "--out", out]
@@ -122,6 +142,31 @@ def test_other_commands_hand_over_their_options(called: dict[str, Any], tmp_path
     assert (called["fraction"], called["start"]) == (0.6, "steady")
     assert main(["gallery"]) == 0
     assert called["out"] == Path("reports/gallery")
+
+
+def test_turn_hands_over_lists_and_knots(called: dict[str, Any], tmp_path: Path) -> None:
+    out = str(tmp_path / "out")
+    line = ["turn", "multipart-2200", "--out", out, "--quiet", "--speed", "6 kn, 2 m/s", "--radius", "250,500"]
+    assert main([*line, "--turns", "2", "--parts", "1,3", "--length", "2200"]) == 0
+    assert called["speeds"] == pytest.approx((6.0 * 1852.0 / 3600.0, 2.0))
+    assert (called["radii"], called["turns"], called["parts"]) == ((250.0, 500.0), (2.0,), (1, 3))
+    assert (called["lengths"], called["u_turn"], called["out"]) == ((2200.0,), False, Path(out))
+    assert main(["turn", "multipart-2200", "--out", out, "--quiet", "--u-turn"]) == 0
+    assert (called["u_turn"], called["speeds"], called["turns"]) == (True, (), ())
+    assert called["study"] == "turn"
+    assert main(["turn", "multipart-2200", "--out", out, "--quiet", "--claims"]) == 0
+    assert called["study"] == "claims"
+
+
+def test_compare_and_bench_take_any_number_of_configurations(called: dict[str, Any]) -> None:
+    assert main(["compare", "--quiet"]) == 0
+    assert [each.name for each in called["first"]] == ["mangus-740", "autec-1200", "mangus-2500"]
+    assert (called["study"], called["out"]) == ("compare", Path("compare"))
+    assert main(["bench", "--quiet"]) == 0
+    assert [each.name for each in called["first"]] == ["multipart-2200", "autec-1200"]
+    assert called["out"] == Path("bench")
+    assert main(["bench", "mangus-740", "--out", "x", "--quiet"]) == 0
+    assert ([each.name for each in called["first"]], called["out"]) == (["mangus-740"], Path("x"))
 
 
 @pytest.mark.parametrize(
@@ -140,6 +185,12 @@ def test_other_commands_hand_over_their_options(called: dict[str, Any], tmp_path
         (["simulate", "autec-1200", "--ship", "a", "--out", "b", "--tolerance", "nan"], "--tolerance must be"),
         (["simulate", "autec-1200", "--ship", "a", "--out", "b", "--tolerance", "0"], "0 m/s"),
         (["simulate", "autec-1200", "--ship", "a", "--out", "b", "--start", "fast"], "--start"),
+        (["simulate", "autec-1200", "--ship", "a", "--out", "b", "--links", "3"], "--links"),
+        (["turn", "multipart-2200", "--out", "b", "--speed", "6 kmh"], "6 kmh"),
+        (["turn", "multipart-2200", "--out", "b", "--radius", "250;500"], "--radius needs numbers joined by commas"),
+        (["turn", "multipart-2200", "--out", "b", "--parts", "1.5"], "--parts"),
+        (["turn", "multipart-2200", "--out", "b", "--claims", "--u-turn"], "sweeps of its own"),
+        (["bench", "nope"], "neither a file nor a built-in"),
         (["record", "autec-1200", "--input", "step", "--out", "b", "--duration", "-3"], "above 0 s, but it is -3 s"),
         (["record", "autec-1200", "--input", "step", "--out", "b", "--duration", "inf"], "inf s"),
         (["fit", "autec-1200", "--model", "massless-linear", "--out", "b"], "--record"),

@@ -102,9 +102,19 @@ def test_a_speed_jump_is_fine_and_a_position_jump_is_not(tmp_path: Path) -> None
         read_record(_ship_only(tmp_path, ["0,0", "1,0", "2,20", "3,20"]))
 
 
-def test_further_bodies_are_accepted_and_noted(tmp_path: Path) -> None:
-    record = read_record(_ship_only(tmp_path, ["0,0,1", "1,1,1"], "time_s,ship_x_m,body_2_x_m"))
-    assert record.notes == ("1 column of further bodies not used: body_2_x_m.",)
+def test_further_bodies_are_handed_back_in_order_and_noted(tmp_path: Path) -> None:
+    header = "time_s,ship_x_m,body_10_x_m,body_2_x_m,body_2_z_m"
+    record = read_record(_ship_only(tmp_path, ["0,0,5,1,-7", "1,1,6,2,", "2,2,7,3,-9"], header))
+    assert record.notes == ("2 further bodies not scored: body_2, body_10.",)
+    second, tenth = record.bodies
+    assert second.position[:, 0].tolist()[::2] == [1.0, 3.0]
+    assert second.valid.tolist() == [True, False, True]
+    assert tenth.position.tolist() == [[5.0, 0.0, 0.0], [6.0, 0.0, 0.0], [7.0, 0.0, 0.0]]
+    with pytest.raises(InvalidInput, match="the column body_2_x_m is needed beside body_2_z_m"):
+        read_record(_ship_only(tmp_path, ["0,0,1", "1,1,1"], "time_s,ship_x_m,body_2_z_m"))
+    other = Trace.along_x([0.0, 2.0], [0.0, 1.0])
+    with pytest.raises(InvalidInput, match="same times"):
+        Record(name="a", ship=Trace.along_x([0.0, 1.0], [0.0, 1.0]), bodies=(other,))
 
 
 @pytest.mark.parametrize(

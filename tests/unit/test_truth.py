@@ -10,11 +10,11 @@ from data_synth import inputs
 from data_synth.ships import FewSinusoids, SharpTransients, StartsAndStops
 from ident import truth
 from ident.configuration import Configuration, load
-from models import fine_chain, spectral
+from models import link_joint
 from models.current import Current
 from models.tow import Tow
+from models.towed_system import Part, TowedSystem
 from models.trace import Trace
-from models.vehicle import Towfish, Vehicle
 
 CHANGED = ("cable normal drag", "cable added mass", "vehicle drag", "vehicle added mass")
 
@@ -79,68 +79,97 @@ def test_coefficients_change_by_exactly_the_configured_share() -> None:
     assert [wide.changes[name] > 1.0 for name in CHANGED] == [checked(0).changes[name] > 1.0 for name in CHANGED]
 
 
-@pytest.mark.parametrize("seed", [0, 3])
-def test_the_truth_is_the_fine_chain_of_the_changed_tow(seed: int) -> None:
-    """Every factor is on its own coefficient and on nothing else."""
-    check, tow = checked(seed), short().tow
-    assert isinstance(tow.vehicle, Vehicle)
-    by = check.changes
-    changed = replace(
-        tow,
-        cable=replace(
-            tow.cable,
-            normal_drag_coefficient=tow.cable.normal_drag_coefficient * by["cable normal drag"],
-            added_mass=tow.cable.added_mass * by["cable added mass"],
-        ),
-        vehicle=replace(
-            tow.vehicle,
-            drag_coefficient=tow.vehicle.drag_coefficient * by["vehicle drag"],
-            added_mass=tow.vehicle.added_mass * by["vehicle added mass"],
-        ),
+def chain_of(own: Configuration, system: TowedSystem, ship: Trace) -> link_joint.LinkJointResult:
+    settings = own.verification
+    return link_joint.simulate(system, ship, links=settings.links, tolerance=settings.tolerance, start="rest")
+
+
+def changed_by_hand(part: Part, by: dict[str, float]) -> Part:
+    assert part.body is not None
+    drag, added = part.cable.normal_drag_coefficient, part.cable.added_mass
+    cable = replace(
+        part.cable,
+        normal_drag_coefficient=drag * by["cable normal drag"],
+        added_mass=added * by["cable added mass"],
     )
-    expected = fine_chain.simulate(changed, check.ship)
+    mass = by["vehicle added mass"]
+    body = replace(
+        part.body,
+        drag_coefficient=part.body.drag_coefficient * by["vehicle drag"],
+        added_mass_surge=part.body.added_mass_surge * mass,
+        added_mass_sway=part.body.added_mass_sway * mass,
+        added_mass_heave=part.body.added_mass_heave * mass,
+    )
+    return replace(part, cable=cable, body=body)
+
+
+@pytest.mark.parametrize("seed", [0, 3])
+def test_the_truth_is_the_chain_of_the_changed_tow(seed: int) -> None:
+    """Every factor is on its own coefficient and on nothing else."""
+    check, own = checked(seed), short()
+    system = own.system
+    changed = replace(system, parts=tuple(changed_by_hand(part, check.changes) for part in system.parts))
+    expected = chain_of(own, changed, check.ship)
     np.testing.assert_array_equal(check.truth.position, expected.vehicle.position)
-    assert (check.links, check.error) == (60, expected.error)
-    flowing = fine_chain.simulate(replace(changed, current=Current.uniform(0.05)), check.ship)
+    assert (check.chain.links, check.chain.error) == ((60,), expected.error)
+    flowing = chain_of(own, replace(changed, current=Current.uniform(0.05)), check.ship)
     np.testing.assert_array_equal(check.in_current.position, flowing.vehicle.position)
 
 
-def unchanged(own: Configuration, tow: Tow) -> truth.Verification:
-    own = replace(own, tow=tow, verification=replace(own.verification, coefficient_change=0.0))
-    return truth.verification(own, 0)
+def unchanged(own: Configuration) -> Configuration:
+    return replace(own, verification=replace(own.verification, coefficient_change=0.0))
 
 
-def test_no_change_is_the_fine_chain_of_the_tow_itself() -> None:
-    own = short()
-    check = unchanged(own, own.tow)
-    assert check.links == 60
-    # The cable itself hangs; the added current of the second row leans it a little.
-    assert 0.0 < check.slant < 0.01
-    np.testing.assert_array_equal(check.truth.position, fine_chain.simulate(own.tow, check.ship).vehicle.position)
+def test_no_change_is_the_chain_of_the_tow_itself_with_the_links_asked_for() -> None:
+    own = unchanged(short())
+    fewer = replace(own, verification=replace(own.verification, links=20))
+    for each in (own, fewer):
+        check = truth.verification(each, 0)
+        expected = chain_of(each, own.system, check.ship).vehicle
+        np.testing.assert_array_equal(check.truth.position, expected.position)
+    assert check.chain.links == (20,)
 
 
-def test_the_spectral_simulator_stands_in_where_the_cable_leans_or_its_body_pitches(table_two: Tow) -> None:
-    own = short()
-    leaning, upright = replace(own.tow, speed=1.0), replace(own.tow, speed=0.05)
-    assert unchanged(own, upright).links == 60
-    for tow in (leaning, table_two):
-        check = unchanged(own, tow)
-        assert check.links is None
-        expected = spectral.simulate(tow, check.ship, tolerance=own.spectral.tolerance)
-        np.testing.assert_array_equal(check.truth.position, expected.vehicle.position)
-        assert check.error == expected.error
-    assert unchanged(own, leaning).slant > truth.LARGEST_SLANT
+@pytest.mark.parametrize("name", ["mangus-740", "autec-1200", "mangus-2500"])
+def test_the_truth_errs_by_a_ten_thousandth_of_a_metre_a_second_and_says_so(name: str) -> None:
+    """Against twice the links and a fiftieth of the tolerance."""
+    check = truth.verification(load(name), 0)
+    system = load(name).system
+    changed = replace(system, parts=tuple(changed_by_hand(part, check.changes) for part in system.parts))
+    finer = link_joint.simulate(changed, check.ship, links=120, tolerance=1e-6, start="rest", companion=False).vehicle
+    assert check.truth.velocity is not None
+    assert finer.velocity is not None
+    error = float(np.sqrt(np.mean(np.sum((check.truth.velocity - finer.velocity) ** 2, axis=1))))
+    assert check.chain.error is not None
+    assert error < check.chain.error < 1e-4
+    assert error > 0.3 * check.chain.error
+    assert check.chain.imbalance < 1e-3
+    assert check.chain.slack == ()
 
 
-def test_a_towfish_is_changed_too(table_two: Tow) -> None:
-    changed = truth._changed(table_two, dict.fromkeys(CHANGED, 1.1))
-    before, after = table_two.vehicle, changed.vehicle
-    assert isinstance(before, Towfish)
-    assert isinstance(after, Towfish)
-    for name in ("drag_coefficient", "added_mass_p", "added_mass_q"):
-        assert getattr(after, name) == pytest.approx(1.1 * getattr(before, name))
-    assert after.mass == before.mass
-    assert changed.cable.mass == table_two.cable.mass
+def test_a_leaning_tow_and_a_towfish_are_chains_too(table_two: Tow) -> None:
+    own = unchanged(short())
+    for tow in (replace(own.tow, speed=1.0), table_two):
+        check = truth.verification(replace(own, tow=tow), 0)
+        expected = chain_of(own, TowedSystem.from_tow(tow), check.ship).vehicle
+        np.testing.assert_array_equal(check.truth.position, expected.position)
+
+
+def test_parts_behind_the_vehicle_are_towed_and_changed() -> None:
+    own = short("multipart-2200")
+    check = truth.verification(own, 1)
+    assert check.chain.names == ("vehicle", "damping-unit", "towed-body")
+    changed = replace(own.system, parts=tuple(changed_by_hand(part, check.changes) for part in own.system.parts))
+    np.testing.assert_array_equal(check.truth.position, chain_of(own, changed, check.ship).vehicle.position)
+    alone = truth.verification(replace(own, tails=()), 1)
+    assert np.abs(alone.truth.position - check.truth.position).max() > 5.0
+
+
+def test_a_bare_end_has_only_a_cable_to_change() -> None:
+    own = short().system.parts[0]
+    part = truth._changed(replace(own, body=None), dict.fromkeys(CHANGED, 1.1))
+    assert part.body is None
+    assert part.cable.added_mass == pytest.approx(1.1 * own.cable.added_mass)
 
 
 def test_fixes_have_the_configured_interval_noise_offset_and_dropouts() -> None:
