@@ -1,0 +1,67 @@
+"""What the benchmark collects on the way: rows, targets, and what it left out for lack of time."""
+
+import time
+from dataclasses import dataclass, field
+from typing import Any
+
+from ident.terminal import Progress
+from ident.timing import Timing
+
+#: Columns of bench.csv.
+COLUMNS = (
+    "configuration",
+    "method",
+    "setting",
+    "error_kind",
+    "error_rms_velocity_m_s",
+    "seconds_per_hour",
+    "compile_s",
+    "repetitions",
+    "spread",
+)
+HOUR = 3600.0
+
+
+@dataclass(kw_only=True)
+class Record:
+    """What is collected on the way."""
+
+    progress: Progress
+    budget: float
+    begun: float = field(default_factory=time.perf_counter)
+    rows: list[tuple[Any, ...]] = field(default_factory=list)
+    cut: list[tuple[str, str]] = field(default_factory=list)
+    targets: list[dict[str, Any]] = field(default_factory=list)
+    compile_s: dict[str, float] = field(default_factory=dict)
+
+    def tell(self, what: str) -> None:
+        """Progress, by the share of the budget that is spent."""
+        self.progress(what, 0.98 * self._spent / max(self._spent, self.budget))
+
+    def compiled(self, method: str, seconds: float) -> None:
+        """What a method took to compile [s]."""
+        self.compile_s[method] = seconds
+
+    def has_time(self, what: str, seconds: float) -> bool:
+        """Whether so much is left of the budget; tells the progress, or lists what is left out."""
+        left = max(0.0, self.budget - self._spent)
+        if seconds > left:
+            self.cut.append((what, f"would take about {seconds:g} s of the {left:.0f} s left"))
+            return False
+        self.tell(what)
+        return True
+
+    @property
+    def _spent(self) -> float:
+        return time.perf_counter() - self.begun
+
+    def row(self, configuration: str, method: str, setting: str, kind: str, error: float, timing: Timing) -> None:
+        """A row of bench.csv; the timing is of a second of record."""
+        hour, compiled = HOUR * timing.seconds, self.compile_s.get(method, 0.0)
+        self.rows.append(
+            (configuration, method, setting, kind, error, hour, compiled, timing.repetitions, timing.spread)
+        )
+
+    def target(self, what: str, asked: str, found: str, met: bool) -> None:
+        """A row of the table of targets."""
+        self.targets.append({"target": what, "asked": asked, "found": found, "met": met})

@@ -1,0 +1,95 @@
+"""The benchmark end to end at a small size: its tables, its page, and what it leaves out."""
+
+import json
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from ident import chain_bench, peers
+from ident.bench_record import COLUMNS
+from ident.chain_bench import REDUCED
+from ident.configuration import load
+from ident.studies.bench import bench
+from models.tow import Tow
+from models.towed_system import TowedSystem
+
+TINY = replace(REDUCED, links=(4, 6), tolerances=(1e-2,), growth_links=(8, 16), growth_lengths=(60.0, 120.0))
+
+
+def quiet(stage: str, fraction: float) -> None:
+    """No progress."""
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Two configurations at the smallest size, without the peer."""
+    out = tmp_path_factory.mktemp("bench") / "out"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(peers, "version", lambda: None)
+        names = ["autec-1200", "multipart-2200"]
+        result = bench([load(name) for name in names], out=out, progress=quiet, budget=1000.0, effort=TINY)
+    assert result.folder == out
+    assert {"target", "asked", "found", "met"} == set(result.table[0])
+    return out
+
+
+def test_every_setting_has_a_row(folder: Path) -> None:
+    table = pd.read_csv(folder / "bench.csv")
+    assert tuple(table.columns) == COLUMNS
+    precision = table[~table["error_kind"].str.startswith("growth")]
+    assert len(precision) == 2 * 3 * 2
+    assert (precision["error_rms_velocity_m_s"] > 0.0).all()
+    assert (table["seconds_per_hour"] > 0.0).all()
+    assert table["spread"].ge(0.0).all()
+    # Twice the tow, six links instead of four: the error falls, nearly as the square.
+    for _, pair in precision.groupby(["configuration", precision["setting"].str.partition(":")[0]]):
+        assert pair["error_rms_velocity_m_s"].iloc[1] < 0.8 * pair["error_rms_velocity_m_s"].iloc[0]
+
+
+def test_the_turn_is_run_with_each_number_of_parts(folder: Path) -> None:
+    turns = pd.read_csv(folder / "turn.csv")
+    assert turns["configuration"].unique().tolist() == ["multipart-2200"]
+    assert turns["parts"].tolist() == [1, 2, 3]
+    assert (turns["track_m"] > 0.0).all()
+
+
+def test_the_page_names_what_is_missing(folder: Path) -> None:
+    page = (folder / "report.md").read_text(encoding="utf-8")
+    assert peers.INSTALL in page
+    assert "## Growth" in page
+    for figure in ("growth", "work-precision-autec-1200", "work-precision-multipart-2200"):
+        assert (folder / "figures" / f"{figure}.png").stat().st_size > 1000
+    told = json.loads((folder / "manifest.json").read_text(encoding="utf-8"))
+    assert list(told["configurations"]) == ["autec-1200", "multipart-2200"]
+    assert told["moordyn"] == "not installed"
+
+
+def test_what_the_budget_cuts_is_listed(tmp_path: Path) -> None:
+    bench([load("multipart-2200")], out=tmp_path / "out", progress=quiet, budget=0.0, effort=TINY)
+    page = (tmp_path / "out" / "report.md").read_text(encoding="utf-8")
+    left_out = page[page.index("## Left out") : page.index("## Manifest")]
+    for what in ("growth", "the dense form", "the turn with 3 parts"):
+        assert what in left_out
+    assert not (tmp_path / "out" / "turn.csv").exists()
+
+
+def test_growth_is_per_doubling() -> None:
+    sizes = (10.0, 20.0, 80.0)
+    growth = chain_bench.Growth(
+        what="links", sizes=sizes, seconds=(1.0, 1.5, 6.0), iterations=(2.0,) * 3, spread=(0.0,) * 3, repetitions=1
+    )
+    assert growth.doubling == pytest.approx(2.0)
+    assert growth.exponent == pytest.approx(1.0)
+
+
+def test_the_dense_form_is_timed_on_a_state_it_solves(configurations: Callable[[str], Tow]) -> None:
+    system = TowedSystem.from_tow(configurations("autec-1200"))
+    [row] = chain_bench.dense_form(system, chain_bench.circles(3.0, 250.0, 60.0), replace(TINY, dense_links=(8,)))
+    assert row.links == 8
+    assert math.isfinite(row.evaluation / row.step)
+    assert np.sign(row.step) == 1.0
