@@ -1,4 +1,4 @@
-"""The committed sample pages: a run of every built-in configuration, the step study, and the spread over seeds."""
+"""The committed sample pages: runs of built-in configurations, the studies, and the spread over seeds."""
 
 import time
 from collections.abc import Sequence
@@ -12,18 +12,23 @@ from ident.configuration import Configuration, load
 from ident.costs import cost_summary, costs
 from ident.learning import fit_many
 from ident.manifest import versions
+from ident.options import BENCHED, COMPARED
 from ident.places import MANIFEST, new_folder
 from ident.run_records import IDENTIFICATION, TRUTH, prepare_records
 from ident.scores import model_row, scores_table
 from ident.studies import run as study
+from ident.studies.bench import bench
+from ident.studies.compare import compare
 from ident.studies.step import step
+from ident.studies.turn import answer_claims
 from ident.terminal import Progress
 from models.statics import static_shape
 from reports.files import write_json, write_table
 from reports.markdown import Page
 
-NAMES = ("mangus-740", "autec-1200", "mangus-2500")
+NAMES = COMPARED
 STEP_NAME = "mangus-2500"
+TURN_NAME = "multipart-2200"
 SEEDS = (0, 1, 2, 3, 4)
 
 _HEADINGS = {
@@ -45,10 +50,10 @@ _COST_HEADINGS = {
 
 
 def gallery(*, out: Path, progress: Progress, names: Sequence[str] = NAMES, seeds: Sequence[int] = SEEDS) -> None:
-    """Make the pages of the built-in configurations, the step study, and the table of errors over the seeds."""
+    """Make the pages of the built-in configurations, the studies, and the table of errors over the seeds."""
     with new_folder(out) as folder:
         tables = []
-        share = 1.0 / (len(names) + 1)
+        share = 1.0 / (len(names) + 2)
         for i, name in enumerate(names):
             began = i * share
 
@@ -60,13 +65,23 @@ def gallery(*, out: Path, progress: Progress, names: Sequence[str] = NAMES, seed
             tables.append(errors_over_seeds(configuration, seeds, inside).assign(configuration=name))
         spent = pd.concat([costs(load(name), seeds) for name in names], ignore_index=True)
         write_table(folder / "costs.csv", spent, digits=4)
-        progress("step study", 1.0 - share)
-        step(load(STEP_NAME), out=folder / "step-study", progress=lambda stage, done: None)
+        progress("simulators compared", 1.0 - 2.2 * share)
+        compare([load(name) for name in names], out=folder / "simulators-compared", progress=_silent)
+        progress("step study", 1.0 - 2.0 * share)
+        step(load(STEP_NAME), out=folder / "step-study", progress=_silent)
+        progress("turning study", 1.0 - 1.9 * share)
+        answer_claims(load(TURN_NAME), out=folder / "turning-study", progress=_silent)
+        progress("benchmark", 1.0 - 0.7 * share)
+        bench([load(name) for name in BENCHED], out=folder / "benchmark", progress=_silent)
         errors = pd.concat(tables, ignore_index=True)
         write_table(folder / "errors-over-seeds.csv", errors, digits=6)
         _page(folder, names, seeds, summary(errors), cost_summary(spent))
         write_json(folder / MANIFEST, {"program": "cable-ident", "command": "gallery", "versions": versions()})
         progress("done", 1.0)
+
+
+def _silent(stage: str, done: float) -> None:
+    """No progress of a study inside another."""
 
 
 def errors_over_seeds(configuration: Configuration, seeds: Sequence[int], progress: Progress) -> pd.DataFrame:
@@ -108,10 +123,12 @@ def _page(folder: Path, names: Sequence[str], seeds: Sequence[int], table: pd.Da
     page = Page("Gallery")
     page.paragraph(
         f"Made by `cable-ident gallery` on {time.strftime('%Y-%m-%d', time.gmtime())}: one page a built-in "
-        "configuration with seed 0, the step study, and below the velocity errors over the seeds "
+        "configuration with seed 0, the step study, the turning study of a tow of three parts, the two reference "
+        "simulators compared, the benchmark of the link-joint simulator, and below the velocity errors over the seeds "
         f"{', '.join(map(str, seeds))} of the standard input, each with its own verification truth."
     )
-    page.bullets([f"[{name}]({name}/report.md)" for name in names] + ["[step study](step-study/report.md)"])
+    places = [*names, "step-study", "turning-study", "simulators-compared", "benchmark"]
+    page.bullets([f"[{place}]({place}/report.md)" for place in places])
     page.heading("Velocity errors over seeds")
     page.table(table, _HEADINGS, {"median": ".4f", "worst": ".4f", "thesis": ".4f"})
     page.heading("Run time and accuracy of the simulators")
