@@ -56,6 +56,13 @@ def fast_kernel(function: _F) -> _F:
     return cast(_F, compiled)
 
 
+def inner_kernel(function: _F) -> _F:
+    """`kernel` that only kernels call: without a way in from Python, which costs as much to compile as the rest."""
+    alone: Any = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+    compiled: Any = numba.njit(cache=True, nogil=True, error_model="numpy", **alone)(function)
+    return cast(_F, compiled)
+
+
 def inline_kernel(function: _F) -> _F:
     """`kernel` written into its callers: for the parts of an inner loop that take many arrays."""
     compiled: Any = numba.njit(cache=True, nogil=True, error_model="numpy", forceinline=True)(function)

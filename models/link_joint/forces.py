@@ -21,7 +21,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from models.kernels import inline_kernel, kernel
+from models.kernels import inline_kernel, inner_kernel, kernel
 from models.link_joint import columns as col
 from models.link_joint.chain import INCIDENCE
 
@@ -147,7 +147,7 @@ def body_axes(surge: float, sway: float, tx: float, ty: float) -> tuple[float, f
     return mean + share * tx * tx, share * tx * ty, mean + share * ty * ty
 
 
-@kernel
+@inner_kernel
 def directions(part: Indices, parent: Indices, length: Floats, n: int, X: Floats, W: Floats) -> None:
     """Tangent and length of every link, and the tangents at a third of it from its lower and its upper end.
 
@@ -183,7 +183,7 @@ def directions(part: Indices, parent: Indices, length: Floats, n: int, X: Floats
             W[i, at], W[i, at + 1], W[i, at + 2], W[i, at + 3] = x * over, y * over, z * over, own
 
 
-@kernel
+@inner_kernel
 def water_at(depths: Floats, x: Floats, y: Floats, near: float, far: float) -> tuple[float, float]:
     """The water's velocity [m/s] at a third of a link whose ends are at the heights `near` and `far` [m]."""
     return current_at(depths, x, y, NEAR * near + FAR * far)

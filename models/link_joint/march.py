@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from models.kernels import kernel
+from models.kernels import inner_kernel, kernel
 from models.link_joint import columns as col
 from models.link_joint.chain import Chain
 from models.link_joint.energy import energy_of, power_of
@@ -39,7 +39,7 @@ SLACK_ERROR, PATIENCE = 0.02, 0.05
 #: Largest payout or haul in a step, over the top links' length.
 _REELED = 0.2
 
-DONE, STUCK, NOT_FINITE, BUDGET_SPENT, EVENTS_FULL = range(5)
+DONE, STUCK, NOT_FINITE, BUDGET_SPENT, EVENTS_FULL, PAUSED = range(6)
 
 
 class Curve(NamedTuple):
@@ -65,11 +65,12 @@ class Settings(NamedTuple):
     step: float
     first: float
     budget: int
+    at_a_time: int  # steps of one call
     nominal: float  # unstretched length of the top links [m]
 
 
 class Outcome(NamedTuple):
-    """How a march ended: code, time, link, quantity; steps taken and rejected, Newton iterations, drift, energies."""
+    """Where a march is or how it ended: code, time, link, quantity; counts, drift, energies; where it goes on from."""
 
     code: int
     t: float
@@ -82,10 +83,13 @@ class Outcome(NamedTuple):
     unexplained: float  # change of energy less work while all links are taut [J]
     snapped: float  # the same while links are slack or fall taut, below zero where impacts swallow energy [J]
     turnover: float  # absolute work, the scale of the two [J]
-    nodes: int  # moving nodes at the end
+    nodes: int  # moving nodes
+    h: float  # next step [s]
+    row: int  # next output time
+    base: float  # top link's length less what is paid out [m]
 
 
-@kernel
+@inner_kernel
 def curve_at(curve: Curve, t: float, at: int, value: Floats, rate: Floats, second: Floats) -> int:
     """Value, rate and second derivative (d,) at t, searched from interval `at` on; returns the interval."""
     last = curve.t.size - 2
@@ -102,7 +106,7 @@ def curve_at(curve: Curve, t: float, at: int, value: Floats, rate: Floats, secon
     return at
 
 
-@kernel
+@inner_kernel
 def _ship_strays(ship: Curve, at: int, t: float, h: float, n: int, x: Floats, v: Floats) -> float:
     """How far the ship's motion inside a step is from the cubic through its ends, over the step [m/s]."""
     p, rate, second = np.empty(3), np.empty(3), np.empty(3)
@@ -115,7 +119,7 @@ def _ship_strays(ship: Curve, at: int, t: float, h: float, n: int, x: Floats, v:
     return worst / h
 
 
-@kernel
+@inner_kernel
 def _local_error(c: Chain, n: int, h: float, s: State, w: Work, dV: Floats, dT: Floats) -> tuple[float, int]:
     """Error of a step [m/s] and the node it is largest at: the velocities' filtered, the positions' over the step."""
     v, a, W, parent = s.v, s.a, w.W, c.parent
@@ -139,7 +143,7 @@ def _local_error(c: Chain, n: int, h: float, s: State, w: Work, dV: Floats, dT: 
     return worst, node
 
 
-@kernel
+@inner_kernel
 def _set_stage(stage: int, n: int, h: float, s: State, jerk: Floats, xh: Floats, vh: Floats) -> None:
     """What a stage starts from, and its guess of velocities and tensions."""
     x, v, a, T = s.x, s.v, s.a, s.T
@@ -163,32 +167,48 @@ def _set_stage(stage: int, n: int, h: float, s: State, jerk: Floats, xh: Floats,
                 v[2, i, j] = v[1, i, j] + (1.0 - GAMMA) * h * (a[1, i, j] + bend)
 
 
+def begin(nodes: int, settings: Settings, t: float) -> Outcome:
+    """A march that has not begun."""
+    h = settings.step if settings.step > 0.0 else settings.first
+    return Outcome(PAUSED, t, 0, 0.0, 0, 0, 0, 0.0, 0.0, 0.0, 0.0, nodes, h, 0, 0.0)
+
+
 @kernel
-def march(c: Chain, ship: Curve, payout: Curve, n: int, s: State, settings: Settings, track: Track, w: Work) -> Outcome:
-    """March the chain over the output times, from the first point of `s`; s, c and track change in place."""
-    m = s.x.shape[1]
+def march(
+    c: Chain, ship: Curve, payout: Curve, s: State, settings: Settings, track: Track, w: Work, so_far: Outcome
+) -> Outcome:
+    """March the chain over the output times, from the first point of `s`; s, c and track change in place.
+
+    Ends with PAUSED where there is more to do than a call may; the same call with its outcome goes on.
+    """
+    n, m = so_far.nodes, s.x.shape[1]
     xh, vh, dV, dT = np.zeros((m, 3)), np.zeros((m, 3)), np.zeros((m, 3)), np.zeros(m)
     jerk = np.zeros((m, 3))
     paid, rates, spare, top = np.zeros(1), np.zeros((3, 1)), np.zeros(1), np.zeros(3)
     x, v, a, T = s.x, s.v, s.a, s.T
-    t, end, row, at, at_pay = track.t[0], track.t[-1], 1, 0, 0
-    winding, fixed = payout.t.size > 0, settings.step > 0.0
-    base = c.length[n - 1]
+    t, h, row, base, at, at_pay = so_far.t, so_far.h, so_far.row, so_far.base, 0, 0
+    end, winding, fixed = track.t[-1], payout.t.size > 0, settings.step > 0.0
+    steps, rejected, iterations, drift = so_far.steps, so_far.rejected, so_far.iterations, so_far.drift
+    unexplained, snapped, turnover = so_far.unexplained, so_far.snapped, so_far.turnover
+    floor, accuracy = PATIENCE * _stretch_time(c, n), 1e-2 * settings.tolerance
     if winding:
         at_pay = curve_at(payout, t, 0, paid, rates[0], spare)
-        base -= paid[0]
-    h = settings.step if fixed else settings.first
-    steps, rejected, iterations = 0, 0, 0
-    drift, unexplained, snapped, turnover = 0.0, 0.0, 0.0, 0.0
-    floor, accuracy = PATIENCE * _stretch_time(c, n), 1e-2 * settings.tolerance
+        w.reel[0] = rates[0, 0]
     energy0 = energy_of(c, n, x[0], v[0], T[0])
     power0, _ = power_of(c, n, x[0], v[0], a[0], T[0], w)
-    pull_on_ends(c, n, track, 0, x[0], v[0], a[0], T[0], w.W)
-    first_row(track, n, x[0], v[0])
+    if row == 0:
+        base = c.length[n - 1] - paid[0]
+        pull_on_ends(c, n, track, 0, x[0], v[0], a[0], T[0], w.W)
+        first_row(track, n, x[0], v[0])
+        row = 1
     code, link, quantity = DONE, 0, 0.0
+    last = steps + rejected + settings.at_a_time
     while row < track.t.size:
         if steps + rejected >= settings.budget:
             code, quantity = BUDGET_SPENT, h
+            break
+        if steps + rejected >= last:
+            code = PAUSED
             break
         if fixed:
             h = settings.step
@@ -290,10 +310,12 @@ def march(c: Chain, ship: Curve, payout: Curve, n: int, s: State, settings: Sett
             power0, _ = power_of(c, n, x[0], v[0], a[0], T[0], w)
         if not fixed:
             h = min(LONGEST, max(floor, h * min(3.0, 0.9 * (error + 1e-12) ** (-1.0 / 3.0))))
-    return Outcome(code, t, link, quantity, steps, rejected, iterations, drift, unexplained, snapped, turnover, n)
+    return Outcome(
+        code, t, link, quantity, steps, rejected, iterations, drift, unexplained, snapped, turnover, n, h, row, base
+    )
 
 
-@kernel
+@inner_kernel
 def _drift(c: Chain, n: int, X: Floats, V: Floats, T: Floats, reel: float) -> float:
     """Largest closure error of a taut link over its length."""
     worst = 0.0
@@ -316,7 +338,7 @@ def _drift(c: Chain, n: int, X: Floats, V: Floats, T: Floats, reel: float) -> fl
     return worst
 
 
-@kernel
+@inner_kernel
 def _stretch_time(c: Chain, n: int) -> float:
     """Shortest time that a stretch takes along a link [s]; of a rigid link that of a stiff steel one."""
     shortest = np.inf

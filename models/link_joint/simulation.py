@@ -33,6 +33,8 @@ _STALLS = 0.7
 #: Cable that moves by this under its own weight turns over too little energy to be judged by its account [m].
 _JUDGED = 0.02
 STEP_BUDGET = 5_000_000
+#: Links times steps after which the march comes back to Python, where it can be interrupted; and least steps.
+AT_A_TIME, LEAST_STEPS = 2_000_000, 100
 MOST_EVENTS = 2000
 
 
@@ -250,9 +252,12 @@ def _run(
         step=0.0 if step is None else step,
         first=min(0.05, span),
         budget=STEP_BUDGET,
+        at_a_time=max(LEAST_STEPS, AT_A_TIME // n),
         nominal=nominal,
     )
-    out = kernel.march(chain, curve, winding, n, state, settings, track, work_for(nodes))
+    out, work = kernel.begin(n, settings, float(ship.t[0])), work_for(nodes)
+    while out.code == kernel.PAUSED:
+        out = kernel.march(chain, curve, winding, state, settings, track, work, out)
     # Impacts of slack links may swallow energy, never make it.
     hung = float(np.sum(np.abs(chain.weight * chain.length)) + np.sum(np.abs(chain.body_weight)))
     scale = max(out.turnover, _JUDGED * hung, 1e-9)

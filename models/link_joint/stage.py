@@ -23,7 +23,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from models.kernels import inline_kernel, kernel
+from models.kernels import inline_kernel, inner_kernel
 from models.link_joint import columns as col
 from models.link_joint.chain import Chain
 from models.link_joint.forces import FAR, NEAR, Nine, body_axes, current_at, directions, end_drag, water_at
@@ -51,7 +51,7 @@ def work_for(nodes: int) -> Work:
     return Work(W=np.zeros((nodes, col.WIDTH)), reel=np.zeros(1))
 
 
-@kernel
+@inner_kernel
 def assemble(
     c: Chain, n: int, g: float, vh: Floats, X: Floats, V: Floats, T: Floats, w: Work
 ) -> tuple[float, int, int]:
@@ -167,7 +167,7 @@ def _add_stiffness(
     W[i, to + 6], W[i, to + 7], W[i, to + 8] = b6 - FAR * D[6], b7 - FAR * D[7], b8 - FAR * D[8]
 
 
-@kernel
+@inner_kernel
 def _add_body(
     i: int,
     over_g: float,
@@ -327,7 +327,7 @@ def reduce(i: int, p: int, last: bool, tension: float, W: Floats) -> None:
         W[p, col.R + 2] += W[i, col.B + 6] * vx + W[i, col.B + 7] * vy + W[i, col.B + 8] * vz + tz * tau
 
 
-@kernel
+@inner_kernel
 def substitute(c: Chain, n: int, w: Work, dV: Floats, dT: Floats) -> None:
     """Changes of velocity dV (m + 1, 3) and tension dT (m,), from the ship down."""
     parent, W = c.parent, w.W
@@ -342,7 +342,7 @@ def substitute(c: Chain, n: int, w: Work, dV: Floats, dT: Floats) -> None:
         dV[i, 2] = W[i, col.V + 2] + W[i, col.G + 6] * x + W[i, col.G + 7] * y + W[i, col.G + 8] * z
 
 
-@kernel
+@inner_kernel
 def solve_stage(
     c: Chain,
     n: int,

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from models.kernels import kernel
+from models.kernels import inner_kernel
 from models.link_joint import columns as col
 from models.link_joint.chain import Chain
 from models.link_joint.forces import FAR, NEAR, directions, end_force, water_at
@@ -39,7 +39,7 @@ class Track(NamedTuple):
     pull: Floats  # (3, parts, 2) at the upper and lower end of every part, at the three points of a step
 
 
-@kernel
+@inner_kernel
 def hermite(s: float, h: float, x0: float, v0: float, x1: float, v1: float) -> float:
     """The cubic at the share s of an interval h, from values and rates at its ends."""
     s2 = s * s
@@ -48,7 +48,7 @@ def hermite(s: float, h: float, x0: float, v0: float, x1: float, v1: float) -> f
     return value
 
 
-@kernel
+@inner_kernel
 def _end_tension(c: Chain, n: int, i: int, end: int, X: Floats, V: Floats, A: Floats, T: Floats, W: Floats) -> float:
     """Pull of the cable on what holds its lower (0) or upper (1) end [N]: the link's, and its half link's load.
 
@@ -76,7 +76,7 @@ def _end_tension(c: Chain, n: int, i: int, end: int, X: Floats, V: Floats, A: Fl
     return math.sqrt(px * px + py * py + pz * pz)
 
 
-@kernel
+@inner_kernel
 def pull_on_ends(
     c: Chain, n: int, track: Track, point: int, X: Floats, V: Floats, A: Floats, T: Floats, W: Floats
 ) -> None:
@@ -88,7 +88,7 @@ def pull_on_ends(
         track.pull[point, part, 1] = _end_tension(c, n, track.ends[part], 0, X, V, A, T, W)
 
 
-@kernel
+@inner_kernel
 def first_row(track: Track, n: int, x: Floats, v: Floats) -> None:
     """The state at the first output time."""
     for part in range(track.ends.size):
@@ -105,7 +105,7 @@ def first_row(track: Track, n: int, x: Floats, v: Floats) -> None:
                 track.shapes[k, i, j] = x[i, j]
 
 
-@kernel
+@inner_kernel
 def write_rows(track: Track, row: int, n: int, t: float, h: float, gamma: float, x: Floats, v: Floats) -> int:
     """The output times inside a step from t, with x and v (3, m + 1, 3) at its three points; returns the next row.
 
@@ -134,7 +134,7 @@ def write_rows(track: Track, row: int, n: int, t: float, h: float, gamma: float,
     return row
 
 
-@kernel
+@inner_kernel
 def note_slack(c: Chain, n: int, track: Track, t: float, T: Floats) -> bool:
     """Largest tensions and slack events after a step to t, with T (3, m); False where there is no room for events."""
     for part in range(track.ends.size):

@@ -5,14 +5,14 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from models.kernels import kernel
+from models.kernels import inner_kernel
 from models.link_joint.chain import Chain
 from models.link_joint.forces import current_at, end_force
 
 Floats = NDArray[np.float64]
 
 
-@kernel
+@inner_kernel
 def change_of_links(c: Chain, n: int, room: int, nominal: float) -> int:
     """Whether the top link is long enough to be parted (1) or so short that it joins the next (-1)."""
     if c.length[n - 1] > 1.5 * nominal and n + 1 < room:
@@ -22,7 +22,7 @@ def change_of_links(c: Chain, n: int, room: int, nominal: float) -> int:
     return 0
 
 
-@kernel
+@inner_kernel
 def _fitted(c: Chain, i: int, p: int, x: Floats, v: Floats, tension: float, reel: float) -> float:
     """Unstretched length of a link that has the given tension where it is, so that the cable feels no jump [m]."""
     rx, ry, rz = x[i, 0] - x[p, 0], x[i, 1] - x[p, 1], x[i, 2] - x[p, 2]
@@ -35,7 +35,7 @@ def _fitted(c: Chain, i: int, p: int, x: Floats, v: Floats, tension: float, reel
     return length
 
 
-@kernel
+@inner_kernel
 def split(c: Chain, n: int, x: Floats, v: Floats, a: Floats, T: Floats, nominal: float, reel: float) -> None:
     """Part the top link: a new node n between node n - 1 and the ship, which moves to row n + 1.
 
@@ -72,7 +72,7 @@ def split(c: Chain, n: int, x: Floats, v: Floats, a: Floats, T: Floats, nominal:
         c.length[n] = _fitted(c, n, n + 1, x, v, T[n], reel)
 
 
-@kernel
+@inner_kernel
 def merge(c: Chain, n: int, x: Floats, v: Floats, a: Floats, T: Floats, reel: float) -> None:
     """Take node n - 1 out: the link of node n - 2 reaches to the ship, which moves to row n - 1."""
     length = c.length[n - 2] + c.length[n - 1]

@@ -7,71 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from ident.dense_chain import accelerations, lumps
 from models.link_joint import gauss
 from models.link_joint.chain import Chain, build
 from models.link_joint.energy import energy_of, power_of
 from models.link_joint.simulation import LARGEST_IMBALANCE
 from models.link_joint.stage import work_for
 from models.tow import Tow
-from models.towed_system import Part, TowedSystem
-
-
-def lumps(part: Part, rho: float, x: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Mass (3n, 3n), weight (3n,) and drag matrix C (3n, 3n), force -C v, of the nodes below the ship (row 0).
-
-    Half of a link at each of its ends, with the link's own tangent; the body at the last node, the same in all axes.
-    """
-    cable, body, n = part.cable, part.body, len(x) - 1
-    half, one = 0.5 * cable.length / n, np.eye(3)
-    M, C, weight = np.zeros((n + 1, 3, 3)), np.zeros((n + 1, 3, 3)), np.zeros((n + 1, 3))
-    for i in range(n):
-        t = (x[i + 1] - x[i]) / np.linalg.norm(x[i + 1] - x[i])
-        along, across = np.outer(t, t), one - np.outer(t, t)
-        for q in (i, i + 1):
-            M[q] += half * (cable.mass * one + cable.added_mass * across)
-            C[q] += half * cable.normal_drag(rho) * np.linalg.norm(across @ v[q]) * across
-            C[q] += half * cable.tangential_drag(rho) * abs(t @ v[q]) * along
-            weight[q, 2] -= half * cable.weight_in_water
-    M[n] += (body.mass + body.added_mass_surge) * one
-    C[n] += 0.5 * rho * body.drag_coefficient * body.area_surge * np.linalg.norm(v[n]) * one
-    weight[n, 2] -= body.weight_in_water
-
-    def blocks(each: np.ndarray) -> np.ndarray:
-        full = np.zeros((n, 3, n, 3))
-        full[range(n), :, range(n), :] = each[1:]
-        return full.reshape(3 * n, 3 * n)
-
-    return blocks(M), weight[1:].ravel(), blocks(C)
-
-
-def printed_form(
-    M: np.ndarray,
-    force: np.ndarray,
-    x: np.ndarray,
-    v: np.ndarray,
-    ship: np.ndarray,
-    correction: np.ndarray | float = 0.0,
-) -> tuple[np.ndarray, np.ndarray]:
-    """Accelerations (n, 3) and tensions (n,): x'' = a + M^-1/2 (A M^-1/2)^+ (b - A a), T_i = -lambda_i l_i.
-
-    Rows from the ship down, x and v with the ship's (row 0), whose acceleration is `ship`. The first row of b has
-    the sign of the derivation, +(s_1 - s_m) s_m'', not the printed one; no tension is inside a.
-    """
-    n, r, rate = len(x) - 1, np.diff(x, axis=0), np.diff(v, axis=0)
-    A = np.zeros((n, n, 3))
-    for i in range(n):
-        A[i, i] = r[i]
-        if i > 0:
-            A[i, i - 1] = -r[i]
-    A = A.reshape(n, 3 * n)
-    b = -(rate**2).sum(axis=1) - correction
-    b[0] += r[0] @ ship
-    values, vectors = np.linalg.eigh(M)
-    root = vectors / np.sqrt(values) @ vectors.T
-    a = np.linalg.solve(M, force)
-    total = a + root @ np.linalg.pinv(A @ root) @ (b - A @ a)
-    multipliers = np.linalg.lstsq(A.T, M @ (total - a), rcond=None)[0]
-    return total.reshape(n, 3), -multipliers * np.linalg.norm(r, axis=1)
+from models.towed_system import TowedSystem
 
 
 def naive_run(
@@ -97,7 +40,7 @@ def naive_run(
         M, weight, C = lumps(part, system.water_density, x, v)
         r, rate = np.diff(x, axis=0), np.diff(v, axis=0)
         correction = 2.0 * omega * (r * rate).sum(axis=1) + 0.5 * omega**2 * ((r**2).sum(axis=1) - size**2)
-        a, T = printed_form(M + step * C, weight - C @ v[1:].ravel(), x, v, pull, correction)
+        a, T = accelerations(M + step * C, weight - C @ v[1:].ravel(), x, v, pull, correction)
         record.append((x.copy(), v.copy(), np.concatenate([[pull], a]), T))
         v[1:] += step * a
         x[1:] += step * v[1:]
@@ -118,7 +61,7 @@ def random_state(length: float, links: int, seed: int) -> tuple[np.ndarray, np.n
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_the_kernel_solves_the_printed_form(configurations: Callable[[str], Tow], seed: int) -> None:
+def test_the_kernel_solves_the_accelerations(configurations: Callable[[str], Tow], seed: int) -> None:
     """Any shape, also a pushing one; the kernel eliminates link by link, the printed form takes a pseudo-inverse.
 
     Without the cable's drag, which the kernel lumps in its own way; the body has its own.
@@ -130,7 +73,7 @@ def test_the_kernel_solves_the_printed_form(configurations: Callable[[str], Tow]
     x, v = random_state(1200.0, links, seed)
     ship = np.array([0.3, -0.2, 0.5])
     M, weight, C = lumps(system.parts[0], 1025.0, x, v)
-    exact, tension = printed_form(M, weight - C @ v[1:].ravel(), x, v, ship)
+    exact, tension = accelerations(M, weight - C @ v[1:].ravel(), x, v, ship)
     found, T = gauss.accelerations(build(system, links).chain, x[::-1], v[::-1], np.zeros(links), ship)
     np.testing.assert_allclose(found[:-1][::-1], exact, rtol=1e-8, atol=1e-8 * np.abs(exact).max())
     np.testing.assert_allclose(T[::-1], tension, rtol=1e-8, atol=1e-8 * np.abs(tension).max())

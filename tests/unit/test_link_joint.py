@@ -10,6 +10,7 @@ from models import link_joint
 from models.body import Body
 from models.cable import Cable
 from models.current import Current
+from models.link_joint import simulation
 from models.link_joint.forces import drag_law, end_drag
 from models.payout import Payout
 from models.quantity import InvalidInput, NumericalFailure
@@ -214,3 +215,33 @@ def test_shapes_are_kept_on_request(system: TowedSystem) -> None:
     assert [shape.shape for shape in run.shapes] == [(11, 3), (11, 3)]
     np.testing.assert_allclose(run.shapes[1][0], run.vehicle.position[30], atol=1e-9)
     np.testing.assert_allclose(run.shapes[1][-1], [30.0, 0.0, 0.0], atol=1e-9)
+
+
+def test_a_long_march_comes_back_to_python_and_goes_on(system: TowedSystem, monkeypatch: pytest.MonkeyPatch) -> None:
+    t = np.arange(0.0, 600.0)
+    ship = Trace.along_x(t, 3.0 * (1.0 - np.cos(0.3 * t)))
+    payout = Payout(t=[0.0, 100.0, 400.0, 600.0], length=[0.0, 0.0, 120.0, 120.0])
+
+    def run() -> link_joint.LinkJointResult:
+        return link_joint.simulate(system, ship, links=12, tolerance=1e-4, payout=payout, companion=False)
+
+    whole, calls, march = run(), [], simulation.kernel.march
+
+    def counted(*given: object) -> object:
+        calls.append(1)
+        if len(calls) == 4 and interrupted:
+            raise KeyboardInterrupt
+        return march(*given)
+
+    interrupted = False
+    monkeypatch.setattr(simulation, "AT_A_TIME", 0)
+    monkeypatch.setattr(simulation.kernel, "march", counted)
+    pieces = run()
+    assert len(calls) > 10
+    assert pieces.steps == pytest.approx(whole.steps, rel=0.02)
+    np.testing.assert_allclose(pieces.vehicle.position, whole.vehicle.position, atol=2e-3)
+    assert pieces.imbalance < 1e-3
+    calls.clear()
+    interrupted = True
+    with pytest.raises(KeyboardInterrupt):
+        run()
