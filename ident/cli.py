@@ -120,7 +120,9 @@ def simulate(
         int | None, typer.Option(min=4, help="Links of the chain's first part; as configured if left out.")
     ] = None,
     tolerance: Tolerance = None,
-    start: Annotated[Start, typer.Option(help="Where it starts.")] = Start.rest,
+    start: Annotated[
+        Start | None, typer.Option(help="Where it starts; if left out, the chain as the ship does, else at rest.")
+    ] = None,
     stepper: Annotated[Stepper | None, typer.Option(help="The time stepper, of the spectral simulator.")] = None,
 ) -> None:
     """Simulate what is towed under a ship's motion."""
@@ -140,7 +142,7 @@ def simulate(
             reference=reference.value,
             links=links,
             tolerance=tolerance,
-            start=start.value,
+            start=None if start is None else start.value,
             stepper=None if stepper is None else stepper.value,
         )
     )

@@ -55,7 +55,7 @@ class LinkJointSettings:
     `links` are those of the first part; the others have links of the same length.
     """
 
-    links: Annotated[int | None, Quantity("n", "-", lower=4, upper=10_000)] = None
+    links: Annotated[int | None, Quantity("n", "-", lower=4, upper=4096)] = None
     tolerance: Annotated[float, Quantity("eps", "m/s", lower=1e-9, upper=0.1)] = 1e-3
     step: Annotated[float | None, positive("dt", "s")] = None
     drag_law: DragLaw = "quadratic"

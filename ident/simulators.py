@@ -20,6 +20,8 @@ Reference = Literal["spectral", "link-joint"]
 
 #: A track counts as planar within this distance, or this share of its extent along the plane.
 _OFF_PLANE, _OFF_SHARE = 1.0, 0.01
+#: A ship that begins faster than this is under way [m/s].
+_UNDER_WAY = 0.05
 #: Slack events that a sentence tells one by one.
 _TOLD = 3
 
@@ -36,7 +38,7 @@ def answer(
     *,
     links: int | None = None,
     tolerance: float | None = None,
-    start: Start = "rest",
+    start: Start | None = None,
     stepper: Stepper | None = None,
     winch: Winch | None = None,
 ) -> tuple[Record, str]:
@@ -48,6 +50,8 @@ def answer(
         Of the link-joint chain's first part; as configured when left out.
     tolerance
         RMS velocity error [m/s]; as configured for the simulator when left out.
+    start
+        Left out, the chain is in the steady tow of a ship that is under way from the first; else all starts at rest.
     stepper
         Of the spectral simulator.
 
@@ -61,7 +65,7 @@ def answer(
     if reference == "spectral":
         if links is not None:
             raise InvalidInput("The spectral simulator has no links; leave out --links or take --reference link-joint.")
-        return _by_spectral(configuration, ship, tolerance, start, stepper or "implicit", winch)
+        return _by_spectral(configuration, ship, tolerance, start or "rest", stepper or "implicit", winch)
     if stepper is not None:
         raise InvalidInput(
             "The link-joint simulator has one stepper of its own; leave out --stepper or take --reference spectral."
@@ -71,7 +75,9 @@ def answer(
             "The winch that holds a depth works with the spectral simulator alone; take the input winch, or a planar "
             "input with --reference spectral."
         )
-    return _by_chain(configuration, ship, links, tolerance, start, winch)
+    under_way = float(np.linalg.norm(ship.ship.spline(ship.t[0], 1)[:2])) > _UNDER_WAY
+    own: Start = "steady" if under_way else "rest"
+    return _by_chain(configuration, ship, links, tolerance, start or own, winch)
 
 
 def _by_spectral(

@@ -20,8 +20,8 @@ from models.towed_system import TowedSystem
 from models.trace import Trace
 from reports.figures.turns import TurnHistory
 
-#: Straight tow before the turn, sampling [s], and least straight tow after a U-turn [s].
-APPROACH, SAMPLE, EXIT = 60.0, 1.0, 1800.0
+#: Straight tow before the turn, sampling, least straight tow after a U-turn, time to put the rudder over [s].
+APPROACH, SAMPLE, EXIT, EASE = 60.0, 1.0, 1800.0, 10.0
 #: A U-turn is followed until the ship has gone so many lengths of all cables.
 FOLLOWED = 2.5
 #: Length of a link where the configuration gives no number of links [m], and the fewest links of the main cable.
@@ -52,7 +52,7 @@ class Turning:
         ):
             value = getattr(self, name)
             if not quantity.holds(value):
-                raise InvalidInput(f"The {name} of a turn must be above 0 {quantity.unit}, but it is {value:g}.")
+                raise InvalidInput(f"The {name} of a turn must be finite, above 0 {quantity.unit}; it is {value:g}.")
 
     @property
     def u_turn(self) -> bool:
@@ -78,15 +78,25 @@ class Turning:
 
     def ship(self, total: float) -> Trace:
         """The ship's track; `total` [m] is the length of all cables."""
-        if not self.u_turn:
-            return ships.full_turn(
-                ships.FullTurn(
-                    speed=self.speed, radius=self.radius, turns=self.turns, approach=APPROACH, exit=0.0, sample=SAMPLE
+        # The rudder goes over within the turn, also in a short one.
+        ease = min(EASE, 0.5 * self.turns * self.circle)
+        if self.u_turn:
+            after = max(EXIT, FOLLOWED * total / self.speed)
+            return ships.u_turn(
+                ships.UTurn(
+                    speed=self.speed, radius=self.radius, approach=APPROACH, exit=after, sample=SAMPLE, ease=ease
                 )
             )
-        after = max(EXIT, FOLLOWED * total / self.speed)
-        return ships.u_turn(
-            ships.UTurn(speed=self.speed, radius=self.radius, approach=APPROACH, exit=after, sample=SAMPLE)
+        return ships.full_turn(
+            ships.FullTurn(
+                speed=self.speed,
+                radius=self.radius,
+                turns=self.turns,
+                approach=APPROACH,
+                exit=0.0,
+                sample=SAMPLE,
+                ease=ease,
+            )
         )
 
 

@@ -240,7 +240,9 @@ def _dense(run: Record, effort: Effort, configuration: Configuration, system: To
         rows.append((each.links, each.evaluation, each.step, ratio, 2.0 * ratio))
         asked = _TIMES_DENSE.get(each.links)
         if asked is not None:
-            what = f"{configuration.name}: dense form's time for a step over the chain's, {each.links} links"
+            what = (
+                f"{configuration.name}: the dense form's time over the chain's, a second-order step, {each.links} links"
+            )
             run.target(what, f"{asked:g}", f"{2.0 * ratio:.0f}", 2.0 * ratio >= asked)
     return pd.DataFrame(rows, columns=["links", "evaluation_s", "step_s", "ratio", "same_order"])
 

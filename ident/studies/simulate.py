@@ -19,7 +19,7 @@ def simulate(
     reference: Reference,
     links: int | None,
     tolerance: float | None,
-    start: Start,
+    start: Start | None,
     stepper: Stepper | None,
 ) -> str:
     """Simulate and write all bodies on the ship file's own times; says in a sentence what was done.

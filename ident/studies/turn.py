@@ -15,6 +15,7 @@ from ident.places import new_folder
 from ident.terminal import Progress
 from ident.turning import Turning, TurnRun, run_all, ship_heave
 from models.quantity import InvalidInput, NumericalFailure
+from models.strumming import strouhal_frequency
 from reports.files import write_json, write_table
 from reports.turn_page import TurnGroup, TurnMaterial, write_turn_page
 
@@ -109,6 +110,11 @@ def turn(
     NumericalFailure
         Every simulation fails, or one under ship heave.
     """
+    for period in heave_periods:
+        if not 1.0 <= period <= 3600.0:
+            raise InvalidInput(
+                f"A period of the ship's heave must be at least 1 s and at most 3600 s, but it is {period:g} s."
+            )
     if u_turn and turns:
         raise InvalidInput("A U-turn is half a circle; leave out either the number of turns or the U-turn.")
     if not speeds and configuration.tow.speed == 0.0:
@@ -216,7 +222,15 @@ def _left_out(configuration: Configuration) -> list[tuple[str, str]]:
         ("winch", "the cable keeps its length"),
         ("sea state", "the ship turns at a level height"),
     ]
-    if not configuration.link_joint.strumming:
+    if configuration.link_joint.strumming:
+        shedding = strouhal_frequency(configuration.tow.cable, configuration.tow.speed)
+        missing.append(
+            (
+                "oscillating part of the strumming drag",
+                f"at {shedding:.0f} Hz across the tow it averages out over a step",
+            )
+        )
+    else:
         missing.append(("strumming", "no drag amplification is asked for"))
     if configuration.tow.current is None:
         missing.append(("current", "the configuration has no [current]"))

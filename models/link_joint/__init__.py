@@ -14,7 +14,6 @@ __all__ = [
     "SteadyTow",
     "accelerations",
     "build",
-    "imbalance",
     "simulate",
     "steady_tow",
 ]

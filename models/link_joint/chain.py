@@ -20,8 +20,8 @@ Indices = NDArray[np.int64]
 
 #: Links that every part has at least, and that the first part may have at most.
 FEWEST_LINKS, MOST_LINKS = 4, 4096
-#: From this stiffness on [N] a link is rigid: its stretch is below the last digits of its length.
-RIGID = 1e14
+#: From this stiffness on [N] a link is rigid: tens of kilonewtons stretch it by a few millionths.
+RIGID = 1e10
 
 QUADRATIC, INCIDENCE = 0, 1
 

@@ -16,6 +16,7 @@ from models.kernels import inner_kernel, kernel
 from models.link_joint import columns as col
 from models.link_joint.chain import Chain
 from models.link_joint.energy import energy_of, power_of
+from models.link_joint.gauss import make_consistent
 from models.link_joint.stage import Work, reduce, solve_stage, substitute
 from models.link_joint.track import Track, first_row, hermite, note_slack, pull_on_ends, write_rows
 from models.link_joint.winding import change_of_links, merge, split
@@ -123,7 +124,7 @@ def _ship_strays(ship: Curve, at: int, t: float, h: float, n: int, x: Floats, v:
 def _local_error(c: Chain, n: int, h: float, s: State, w: Work, dV: Floats, dT: Floats) -> tuple[float, int]:
     """Error of a step [m/s] and the node it is largest at: the velocities' filtered, the positions' over the step."""
     v, a, W, parent = s.v, s.a, w.W, c.parent
-    over = h / (_D * h)
+    over = 1.0 / _D
     for i in range(n):
         W[i, col.RHO] = 0.0
         for k in range(3):
@@ -201,6 +202,9 @@ def march(
         pull_on_ends(c, n, track, 0, x[0], v[0], a[0], T[0], w.W)
         first_row(track, n, x[0], v[0])
         row = 1
+    rigid = False
+    for i in range(n):
+        rigid = rigid or c.compliance[i] == 0.0
     code, link, quantity = DONE, 0, 0.0
     last = steps + rejected + settings.at_a_time
     while row < track.t.size:
@@ -265,6 +269,8 @@ def march(
                 rejected += 1
                 h = max(floor, h * max(0.2, 0.9 * error ** (-1.0 / 3.0)))
                 continue
+        if rigid:
+            make_consistent(c, n, x[2], v[2], a[2], T[2], spare[0] if winding else 0.0, w, dV, dT)
         if winding:
             c.length[n - 1], w.reel[0] = top[1], rates[1, 0]
         power_g, drag_g = power_of(c, n, x[1], v[1], a[1], T[1], w)
@@ -291,7 +297,7 @@ def march(
                 track.pull[0, part, j] = track.pull[2, part, j]
         for i in range(n + 1):
             for j in range(3):
-                jerk[i, j] = (a[2, i, j] - a[1, i, j]) / ((1.0 - GAMMA) * h)
+                jerk[i, j] = (a[2, i, j] - a[0, i, j]) / h if rigid else (a[2, i, j] - a[1, i, j]) / ((1.0 - GAMMA) * h)
                 x[0, i, j], v[0, i, j], a[0, i, j] = x[2, i, j], v[2, i, j], a[2, i, j]
         for i in range(n):
             T[0, i] = T[2, i]

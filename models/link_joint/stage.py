@@ -3,12 +3,13 @@
 With X = xh + g V and A = (V - vh)/g a stage solves, at every node and link,
 
     M_i(X) A_i = loads_i(X, V) - T_i t_i + sum over the links c below T_c t_c,
-    |r_i| (1 + p) + tau t_i.(V_i - V_p) - l_i (1 + T_i/EA) = 0   or   T_i = 0 where that would push,
+    |r_i| - l_i (1 - p + T_i/EA) + tau t_i.(V_i - V_p) = 0   or   T_i = 0 where that would push,
 
 for the velocities V (m, 3) and the tensions T (m,) together, p the small strain by water pressure. The tensions are
 the multipliers of Gauss's principle; a rigid link has 1/EA = 0. Both the geometric stiffness T (1 - t t')/|r| and the
-change of the drag with the link's direction are in the derivative, so neither the transverse wave nor the tow speed
-bounds the step.
+change of the drag with the link's own direction are in the derivative, so neither the transverse wave nor the tow
+speed bounds the step. What the derivative leaves out, the neighbours' share in the tangent at a third of a link, the
+shear of the current and the heading of a body, costs an iteration at the most.
 
 Node i and its link leave, in terms of the parent's change dV_p,
 

@@ -120,7 +120,7 @@ def test_other_commands_hand_over_their_options(called: dict[str, Any], tmp_path
     out, ship = str(tmp_path / "out.csv"), str(tmp_path / "ship.csv")
     assert main(["simulate", "autec-1200", "--ship", ship, "--out", out, "--stepper", "runge-kutta"]) == 0
     assert (called["reference"], called["tolerance"], called["start"], called["stepper"]) == (
-        ("spectral", None, "rest", "runge-kutta")
+        ("spectral", None, None, "runge-kutta")
     )
     assert called["links"] is None
     chain = ["--reference", "link-joint", "--links", "9"]

@@ -209,6 +209,27 @@ def test_a_towfish_and_a_steep_tow_run(table_two: Tow) -> None:
     assert -run.vehicle.position[-1, 2] < 0.6 * table_two.cable.length
 
 
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-3, 3e-4])
+@pytest.mark.parametrize("stiffness", [1e15, 1e7])
+def test_changing_steps_leave_no_spikes_of_tension(
+    configurations: Callable[[str], Tow], stiffness: float, tolerance: float
+) -> None:
+    """A rigid chain under heave pulls as it does at a fixed step: no link is called slack that is not."""
+    tow = configurations("multipart-2200")
+    system = TowedSystem.from_tow(replace(tow, cable=replace(tow.cable, axial_stiffness=stiffness)))
+    t = np.arange(0.0, 200.0, 0.5)
+    heave = 0.5 * np.sin(2.0 * np.pi / 12.0 * t) * np.clip(t / 60.0, 0.0, 1.0)
+    ship = Trace.along_x(t, tow.speed * t, heave)
+    fixed = link_joint.simulate(system, ship, links=40, step=0.1, companion=False)
+    run = link_joint.simulate(system, ship, links=40, tolerance=tolerance, companion=False)
+    assert not run.slack
+    assert not fixed.slack
+    assert run.tension_max[0] == pytest.approx(fixed.tension_max[0], rel=0.005)
+    assert run.vehicle.tension is not None
+    assert fixed.vehicle.tension is not None
+    np.testing.assert_allclose(run.vehicle.tension, fixed.vehicle.tension, rtol=0.02)
+
+
 def test_shapes_are_kept_on_request(system: TowedSystem) -> None:
     run = link_joint.simulate(system, straight(1.0, 60.0), links=10, shapes_at=np.array([0.0, 30.0]), companion=False)
     assert run.shape_times.tolist() == [0.0, 30.0]
