@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Annotated, Self
 
-from models.quantity import GRAVITY, check_quantities, non_negative, positive
+from models.quantity import GRAVITY, InvalidInput, check_quantities, non_negative, positive
 from models.vehicle import Towfish, Vehicle
 
 
@@ -48,6 +48,11 @@ class Body:
             The vehicle has no area.
         """
         if isinstance(vehicle, Vehicle):
+            if vehicle.area == 0.0:
+                raise InvalidInput(
+                    "Vehicle.area (A) must be above 0 m2 in the link-joint chain, but it is 0 m2: without drag its "
+                    "heave would never die out; give the area, and a drag coefficient of 0 if there is to be no drag."
+                )
             # The weight in air is that of the mass, or that in water where the mass is too small for it.
             weight = max(vehicle.mass * GRAVITY, vehicle.weight_in_water)
             buoyancy = weight - vehicle.weight_in_water

@@ -56,7 +56,10 @@ class Chain(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Layout:
-    """Which nodes and links each part has: `lower_end` node, `links` per part, `nodes` from the ship's side down."""
+    """A chain, and where its parts are in it: of each part the node of its lower end, and the number of its links.
+
+    The links of a part follow each other from its lower end up, each with the number of its lower node.
+    """
 
     chain: Chain
     lower_end: tuple[int, ...]

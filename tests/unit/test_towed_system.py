@@ -69,6 +69,11 @@ def test_a_towfish_keeps_its_axes() -> None:
 def test_a_body_without_area_is_refused(axis: str) -> None:
     with pytest.raises(InvalidInput, match=rf"Body\.area_{axis} .* must be above 0 m2, but it is 0 m2"):
         replace(BODY, **{f"area_{axis}": 0.0})
+
+
+def test_a_vehicle_without_area_is_named_by_its_own_field() -> None:
+    with pytest.raises(InvalidInput, match=r"Vehicle\.area \(A\) must be above 0 m2 in the link-joint chain"):
+        Body.from_vehicle(replace(POINT, area=0.0))
     assert replace(BODY, drag_coefficient=0.0).drag_coefficient == 0.0
 
 
