@@ -11,6 +11,7 @@ from ident.reading import ConfigurationFile
 from ident.sections import INPUTS, MANOEUVRES, SECTIONS, without_number
 from ident.settings import (
     BodeSettings,
+    CompensatorSettings,
     Heading,
     IdentificationSettings,
     LinkJointSettings,
@@ -32,7 +33,7 @@ Manoeuvre = ships.StartsAndStops | ships.SharpTransients | ships.FewSinusoids
 InputSettings = ShipInput | Winch | WinchDepth
 
 #: The sections that ``cable-ident run`` has no use for, and keys of others: its chain is resolved by [verification].
-_NOT_IN_RUN = ("step", *(f"inputs.{kind}" for kind in INPUTS))
+_NOT_IN_RUN = ("step", "compensator", *(f"inputs.{kind}" for kind in INPUTS))
 _IDLE_IN_RUN = ("link-joint.links", "link-joint.tolerance_m_s", "link-joint.step_s")
 
 
@@ -53,6 +54,7 @@ class Configuration:
     guesses: tuple[str, ...]
     tow: Tow
     tails: tuple[Part, ...]
+    compensator: CompensatorSettings
     spectral: SpectralSettings
     link_joint: LinkJointSettings
     input: ships.StandardInput
@@ -96,6 +98,7 @@ class Configuration:
             guesses=file.checked_guesses(heading.guesses),
             tow=tow,
             tails=read_tails(file, tow.water_density),
+            compensator=file.fill("compensator", CompensatorSettings),
             spectral=file.fill("spectral", SpectralSettings),
             link_joint=file.fill("link-joint", LinkJointSettings),
             input=file.fill("input", ships.StandardInput),

@@ -22,14 +22,16 @@ class ConfigurationFile:
         self.given = tuple(f"{section}.{key}".lstrip(".") for section, table in found.items() for key in table)
         self._values = {name: read(table, keys_for(name, table), self.place(name)) for name, table in found.items()}
         self.tails = tuple(name for name in found if without_number(name) == "tail")
+        self.sections = tuple(name for name in found if without_number(name) == "section")
 
     def __contains__(self, section: str) -> bool:
         return section in self._values
 
     def place(self, section: str) -> str:
         """File and section, for a message."""
-        if section.startswith("tail."):
-            return f"{self.source}: [{without_number(section)}] (tail {section.split('.')[1]})"
+        if without_number(section) != section:
+            kind, number, *_ = section.split(".")
+            return f"{self.source}: [{without_number(section)}] ({kind} {number})"
         return f"{self.source}: [{section}]" if section else f"{self.source}:"
 
     def values(self, section: str) -> Mapping[str, Any]:
@@ -72,7 +74,7 @@ def tables(text: str, source: str) -> dict[str, Mapping[str, Any]]:
     """Section name to table, as given.
 
     Keys above the first section are under the empty name, ``[inputs.KIND]`` is there by its full name, and the second
-    ``[[tail]]`` is ``tail.2`` with ``tail.2.cable`` and ``tail.2.body``.
+    ``[[tail]]`` is ``tail.2`` with ``tail.2.cable`` and ``tail.2.body``, the second ``[[section]]`` is ``section.2``.
 
     Raises
     ------
@@ -83,6 +85,7 @@ def tables(text: str, source: str) -> dict[str, Mapping[str, Any]]:
     found: dict[str, Mapping[str, Any]] = {"": {k: v for k, v in document.items() if k in _HEADING}}
     named = {k: v for k, v in document.items() if k not in _HEADING}
     tails = _tails(named.pop("tail", []), source)
+    sections = _numbered(named.pop("section", []), "section", source)
     kinds = named.pop("inputs", {})
     if not isinstance(kinds, Mapping):
         raise InvalidInput(f"{source}: inputs = {shown(kinds)} must be sections such as [inputs.ramps].")
@@ -96,20 +99,25 @@ def tables(text: str, source: str) -> dict[str, Mapping[str, Any]]:
             raise InvalidInput(f"{source}: {name} = {shown(table)} must be a section [{name}] with keys of its own.")
         found[name] = table
     found.setdefault("cable", {})
-    return found | tails
+    return found | sections | tails
+
+
+def _numbered(given: Any, name: str, source: str) -> dict[str, Mapping[str, Any]]:
+    """The sections ``[[name]]`` by their names with a number."""
+    if not (isinstance(given, list) and all(isinstance(each, Mapping) for each in given)):
+        raise InvalidInput(f"{source}: {name} = {shown(given)} must be sections [[{name}]], with two brackets.")
+    return {f"{name}.{number}": table for number, table in enumerate(given, start=1)}
 
 
 def _tails(given: Any, source: str) -> dict[str, Mapping[str, Any]]:
     """The numbered sections of every ``[[tail]]``; the cable's is there even if left out."""
-    if not (isinstance(given, list) and all(isinstance(each, Mapping) for each in given)):
-        raise InvalidInput(f"{source}: tail = {shown(given)} must be sections [[tail]], with two brackets.")
     found: dict[str, Mapping[str, Any]] = {}
-    for number, tail in enumerate(given, start=1):
-        parts = {"cable": {}} | {name: tail[name] for name in ("cable", "body") if name in tail}
-        found[f"tail.{number}"] = {name: value for name, value in tail.items() if name not in parts}
+    for tail, own in _numbered(given, "tail", source).items():
+        parts = {"cable": {}} | {name: own[name] for name in ("cable", "body") if name in own}
+        found[tail] = {name: value for name, value in own.items() if name not in parts}
         for name, table in parts.items():
             if not isinstance(table, Mapping):
-                place = f"{source}: {name} = {shown(table)} of tail {number}"
+                place = f"{source}: {name} = {shown(table)} of {tail.replace('.', ' ')}"
                 raise InvalidInput(f"{place} must be a section [tail.{name}] with keys of its own.")
-            found[f"tail.{number}.{name}"] = table
+            found[f"{tail}.{name}"] = table
     return found

@@ -8,41 +8,51 @@ import pandas as pd
 from ident.configuration import Configuration
 from ident.reading import tables
 from ident.schema import shown
-from ident.sections import keys_for
-from models.quantity import quantities
+from ident.sections import BY_LENGTH, SECTIONS, keys_for, without_number
 from models.vehicle import Towfish
 
 _COLUMNS = ["part", "setting", "value", "unit", "guess", "note"]
-#: Sections that say how a study is made, not what is towed.
-_SYSTEM = ("water", "cable", "vehicle", "towfish", "tow", "current")
+_Row = tuple[str, str, object, str, bool, str]
+#: Sections that say what is towed, not how a study is made; those of the tails come after them.
+_SYSTEM = ("water", "cable", "section", "vehicle", "towfish", "tow", "current", "compensator")
 
 
 def configuration_table(configuration: Configuration) -> pd.DataFrame:
     """The settings of the towed system as given, and what follows from them; one row a value."""
     found = tables(configuration.text, configuration.source)
-    rows: list[tuple[str, str, object, str, bool, str]] = []
-    for section in _SYSTEM:
-        rows += _rows(section, found.get(section, {}), configuration)
+    rows: list[_Row] = []
+    for kind in _SYSTEM:
+        for section, table in found.items():
+            if without_number(section) == kind:
+                rows += _rows(section, table, configuration)
     for section, table in found.items():
         # A guess counts wherever it stands.
-        if section not in _SYSTEM:
+        if without_number(section) not in _SYSTEM:
             towed = section.startswith("tail.")
             rows += [row for row in _rows(section, table, configuration) if towed or row[4]]
-    given = {(part, name) for part, name, *_ in rows}
-    cable = configuration.tow.cable
-    for name in ("mass", "weight_in_water", "axial_stiffness"):
-        quantity = quantities(type(cable))[name]
-        if ("cable", "density") in given:
-            note = "from density, diameter and modulus"
-            rows.append(("cable", name.replace("_", " "), getattr(cable, name), quantity.unit, False, note))
-    return pd.DataFrame(rows, columns=_COLUMNS)
+    return pd.DataFrame(rows + _from_material(configuration, found), columns=_COLUMNS)
 
 
-def _rows(
-    section: str, table: Mapping[str, Any], configuration: Configuration
-) -> list[tuple[str, str, object, str, bool, str]]:
+def _from_material(configuration: Configuration, found: Mapping[str, Mapping[str, Any]]) -> list[_Row]:
+    """What follows from the material: of the cable, and of each section that it makes another cable."""
+    tow, keys = configuration.tow, [key for key in SECTIONS["cable"] if key.field in BY_LENGTH]
+    sections = {f"section.{number}": cable for number, cable in enumerate(tow.sections, start=1)}
+    rows: list[_Row] = []
+    for section, cable in {"cable": tow.cable, **sections}.items():
+        material = {**found["cable"], **found[section]}
+        if "density_kg_m3" not in material or any(key.name in found[section] for key in keys):
+            continue
+        for key in keys:
+            value = getattr(cable, key.field)
+            if section == "cable" or value != getattr(tow.cable, key.field):
+                name = key.field.replace("_", " ")
+                rows.append((section, name, value, key.unit, False, "from density, diameter and modulus"))
+    return rows
+
+
+def _rows(section: str, table: Mapping[str, Any], configuration: Configuration) -> list[_Row]:
     keys = {key.name: key for key in keys_for(section, table)}
-    rows: list[tuple[str, str, object, str, bool, str]] = []
+    rows: list[_Row] = []
     for name, value in table.items():
         key = keys[name]
         plain = isinstance(value, int | float) and not isinstance(value, bool)
@@ -87,10 +97,10 @@ def left_out(
         missing.append(("winch", "the cable keeps its length"))
     if not sea:
         missing.append(("sea state", "the ship's input has no heave"))
-    if tow.cable.poisson_ratio == 0.5:
+    if all(cable.poisson_ratio == 0.5 for cable in tow.cables):
         why = "Poisson's ratio is 0.5: it adds nothing to the effective tension"
         missing.append(("stretch by water pressure", why))
-    if tow.cable.tangential_drag_coefficient == 0.0:
+    if all(cable.tangential_drag_coefficient == 0.0 for cable in tow.cables):
         missing.append(("tangential drag", "its coefficient is zero"))
     return missing
 

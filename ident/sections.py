@@ -8,6 +8,7 @@ from data_synth import seas, sensors, ships
 from ident.schema import Key, keys_of
 from ident.settings import (
     BodeSettings,
+    CompensatorSettings,
     CurrentProfile,
     Heading,
     IdentificationSettings,
@@ -60,11 +61,17 @@ def _cable_keys() -> tuple[Key, ...]:
     return tuple(replace(key, required=key.required and key.field not in BY_MATERIAL + BY_LENGTH) for key in keys)
 
 
+def _section_keys() -> tuple[Key, ...]:
+    """Those of the cable: what a further length of cable does not say, it takes from the cable."""
+    return tuple(replace(key, required=key.field == "length") for key in _cable_keys())
+
+
 #: Section to its keys; the empty name stands for the keys above the first section.
 SECTIONS: Mapping[str, tuple[Key, ...]] = {
     "": keys_of(Heading),
     "water": keys_of(Tow, only=("water_density",), renamed={"water_density": "density"}),
     "cable": _cable_keys(),
+    "section": _section_keys(),
     "vehicle": keys_of(Vehicle),
     "towfish": keys_of(Towfish),
     "tow": keys_of(Tow, only=("speed",)),
@@ -72,6 +79,7 @@ SECTIONS: Mapping[str, tuple[Key, ...]] = {
     "tail": keys_of(Part, only=("name", "after")),
     "tail.cable": _cable_keys(),
     "tail.body": keys_of(Body),
+    "compensator": keys_of(CompensatorSettings),
     "link-joint": keys_of(LinkJointSettings),
     "spectral": keys_of(SpectralSettings),
     "input": (*keys_of(ships.StandardInput), *keys_of(ScoringSettings)),
@@ -86,7 +94,7 @@ SECTIONS: Mapping[str, tuple[Key, ...]] = {
 
 def without_number(section: str) -> str:
     """The name in `SECTIONS` of a section as it is counted in a file: ``tail.cable`` for ``tail.2.cable``."""
-    return re.sub(r"^tail\.\d+", "tail", section)
+    return re.sub(r"^(tail|section)\.\d+", r"\1", section)
 
 
 def keys_for(section: str, table: Mapping[str, object]) -> tuple[Key, ...]:

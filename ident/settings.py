@@ -120,6 +120,16 @@ class BodeSettings:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class CompensatorSettings:
+    """The heave compensator at the ship: its apparent mass, its stroke, and how soft it can be made (H section IV)."""
+
+    mass: Annotated[float, non_negative("m_comp", "kg")] = 0.0
+    stroke: Annotated[float, positive("R_max", "m")] = 4.0
+    least_stiffness: Annotated[float, positive("k_min", "N/m")] = 100.0
+    least_damping: Annotated[float, positive("b_min", "N s/m")] = 100.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class CurrentProfile:
     """A current: speeds at increasing depths, straight lines between; toward +X unless directions are given."""
 

@@ -1,6 +1,7 @@
 """The two reference simulators on a ship's track: which one it needs, the record of its answer, and how good it is."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -27,8 +28,9 @@ _TOLD = 3
 
 
 def needed(configuration: Configuration, ship: Record) -> Reference:
-    """The spectral simulator for one part behind a ship that keeps to a plane, the link-joint chain for the rest."""
-    return "link-joint" if configuration.tails or _excess(planar(ship)) > 0.0 else "spectral"
+    """The spectral simulator for one uniform part behind a ship that keeps to a plane, the chain for the rest."""
+    several = configuration.tails or configuration.tow.sections
+    return "link-joint" if several or _excess(planar(ship)) > 0.0 else "spectral"
 
 
 def answer(
@@ -123,7 +125,16 @@ def _by_chain(
         payout=payout,
     )
     words = f"the link-joint simulator with {describe_chain(result)}"
-    return recorded(configuration.name, ship.ship, result.bodies), words
+    return recorded(configuration.name, ship.ship, ends(configuration, result)), words
+
+
+def ends(configuration: Configuration, result: LinkJointResult) -> tuple[Trace, ...]:
+    """The vehicle and the lower ends of the tails; the vehicle's tensions are those of the whole cable above it."""
+    top, vehicle = result.bodies[0].tension, result.vehicle.tension
+    assert top is not None
+    assert vehicle is not None
+    whole = replace(result.vehicle, tension=np.column_stack([top[:, 0], vehicle[:, 1]]))
+    return whole, *result.bodies[1 + len(configuration.tow.sections) :]
 
 
 def recorded(name: str, ship: Trace, bodies: Sequence[Trace]) -> Record:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Annotated, Self
 
 from models.quantity import GRAVITY, InvalidInput, check_quantities, non_negative, positive
-from models.vehicle import Towfish, Vehicle
+from models.vehicle import Towfish, Vehicle, refuse_thrust
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,8 +45,9 @@ class Body:
         Raises
         ------
         InvalidInput
-            The vehicle has no area.
+            The vehicle has no area, or a thrust.
         """
+        refuse_thrust(vehicle, "The link-joint chain")
         if isinstance(vehicle, Vehicle):
             if vehicle.area == 0.0:
                 raise InvalidInput(

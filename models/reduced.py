@@ -25,7 +25,7 @@ from models.massless import MAX_LINKS, Massless
 from models.parameter import Drag, Parameter, free_parameters, with_free
 from models.quantity import InvalidInput, NumericalFailure
 from models.statics import StaticShape, travel_time
-from models.tow import Tow
+from models.tow import Tow, refuse_sections_and_thrust
 from models.trace import Trace
 
 ReducedModel = SecondOrder | FirstOrder | Inertial | Massless
@@ -87,7 +87,7 @@ def section(name: str, tow: Tow, shape: StaticShape, *, speed: float = 0.25) -> 
     Raises
     ------
     InvalidInput
-        Unknown name, a speed that is not above zero, a tow without drag, or a slack cable.
+        Unknown name, a speed that is not above zero, a tow without drag, with sections or a thrust, or a slack cable.
 
     Notes
     -----
@@ -98,6 +98,7 @@ def section(name: str, tow: Tow, shape: StaticShape, *, speed: float = 0.25) -> 
     kind, links, drag = _parse(name)
     if not 0.0 < speed < float("inf"):
         raise InvalidInput(f"The speed of the equivalent linear drag must be above 0 m/s, but it is {speed:g} m/s.")
+    refuse_sections_and_thrust(tow, "A reduced model")
     n = max(links, 1)
     link = float(shape.s[-1]) / n
     middle = link * (n - 0.5 - np.arange(n, dtype=float))

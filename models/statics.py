@@ -10,36 +10,54 @@ the shape [m/s], positive toward +X; k_n, k_t quadratic drag per length [N s2/m3
 with u_n = u sin phi, u_t = u cos phi, e = (T - (1 - 2 nu) p A)/EA and c = (1 + e)(1 - nu e), the change of
 the drag area by elongation (H (5)-(6) for nu = 1/2). T (2.8)-(2.9) are the still-tow case without the
 tangential drag. In-water weight makes T the effective tension, so no pressure term is added to it.
+
+Integrated as a force, F = T (cos phi, sin phi), which stays smooth where a slack arc turns sharply.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from models.balance import end_force, towfish_steady_force
 from models.current import Current
-from models.quantity import GRAVITY, InvalidInput, NumericalFailure
+from models.quantity import InvalidInput, NumericalFailure
+from models.rise import Rise, SlackCable, rise
 from models.tow import Tow
-from models.vehicle import Towfish, Vehicle
+
+__all__ = [
+    "SlackCable",
+    "StaticShape",
+    "end_force",
+    "flow_at",
+    "length_for_depth",
+    "midpoint_travel_time",
+    "static_shape",
+    "towfish_steady_force",
+    "travel_time",
+]
 
 Floats = NDArray[np.float64]
 
 #: Depth iterations of a shape in a sheared current, and the closure they must reach [m].
 _DEPTH_ITERATIONS = 60
 _DEPTH_CLOSURE = 1e-9
-
-
-class SlackCable(NumericalFailure):
-    """The tension falls to zero somewhere along the cable."""
+#: Slack is believed when a step of this share of the length from another depth does not take it away.
+_NEARER = 1e-3
+#: A cable that stands out of the water by this share of its length has no shape here.
+_OUT_OF_WATER = 1e-6
+#: The longest cable that a depth is reached with, in depths.
+_LONGEST = 100.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class StaticShape:
-    """The steady shape at n + 1 equally spaced stations, vehicle first.
+    """The steady shape at n + 1 stations, vehicle first.
 
-    `s`, `x`, `z` [m] with x and z counted from the tow point, z up; `phi` [rad]; `T` [N] effective; `strain`
-    [-]; `flow` [m/s] the water's speed relative to the frame; `pitch` [rad] of a towfish, else 0.
+    `s`, `x`, `z` [m] with x and z counted from the tow point, z up; `phi` [rad], without jumps; `T` [N] effective;
+    `strain` [-], where two sections meet that of the lower one; `flow` [m/s] the water's speed relative to the frame;
+    `pitch` [rad] of a towfish, else 0.
     """
 
     s: Floats
@@ -67,18 +85,22 @@ class StaticShape:
         return -float(self.x[0])
 
 
-def static_shape(tow: Tow, *, stations: int = 240) -> StaticShape:
+def static_shape(tow: Tow, *, stations: int = 240, nodes: ArrayLike | None = None) -> StaticShape:
     """Integrate the steady shape up from the vehicle's own force and moment balance.
 
     Parameters
     ----------
     stations
-        Number of equal segments, at least 2; classical Runge-Kutta, fourth order.
+        Number of equal segments between the places that the shape is told at, at least 2. They do not steer the
+        integration, which keeps a relative error of 1e-11 a step.
+    nodes
+        (n + 1,) [m] those places themselves, unstretched lengths from the vehicle: 0 to `tow.length`, increasing.
 
     Raises
     ------
     InvalidInput
-        Fewer than 2 segments, a current across X, or a towfish without a stable pitch angle.
+        Fewer than 2 segments, nodes out of order, a current across X, a towfish without a stable pitch angle, or a
+        cable that comes out of the water.
     SlackCable
         The tension falls to zero below the tow point.
     NumericalFailure
@@ -88,27 +110,106 @@ def static_shape(tow: Tow, *, stations: int = 240) -> StaticShape:
     -----
     T (2.8)-(2.9) with the tangential drag kept; see the module docstring.
     """
-    if stations < 2:
-        raise InvalidInput(f"A static shape needs at least 2 segments, but {stations} was given.")
+    s = _equal(tow.length, stations) if nodes is None else _checked(nodes, tow.length)
+    return _told(tow, steady_way(tow), s)
+
+
+def shape_on(tow: Tow, way: Rise, nodes: ArrayLike) -> StaticShape:
+    """`static_shape` at `nodes`, from its `steady_way` that is there already."""
+    return _told(tow, way, _checked(nodes, tow.length))
+
+
+def steady_way(tow: Tow) -> Rise:
+    """The way up from the vehicle in the steady shape, from the depth where it ends at the surface.
+
+    Raises
+    ------
+    InvalidInput, SlackCable, NumericalFailure
+        As of `static_shape`, but for what concerns stations.
+    """
     if tow.current is not None:
         _check_in_plane(tow.current)
-    depth = tow.cable.length
+    depth, miss = tow.length, math.inf
     previous: tuple[float, float] | None = None
     for _ in range(_DEPTH_ITERATIONS):
-        shape = _integrate_up(tow, depth, stations)
-        miss = depth + float(shape.z[0] - shape.z[-1])
-        if abs(miss) <= _DEPTH_CLOSURE * tow.cable.length or not _depends_on_depth(tow):
-            return shape
+        try:
+            way = rise(tow, depth)
+        except SlackCable:
+            # Slack at a depth that is only tried need not be slack where the vehicle is.
+            nearer = 0.5 * (depth + (0.0 if previous is None else previous[0]))
+            if not _depends_on_depth(tow) or abs(depth - nearer) < _NEARER * tow.length:
+                raise
+            depth = nearer
+            continue
+        miss = way.height
+        if abs(miss) <= _DEPTH_CLOSURE * tow.length or not _depends_on_depth(tow):
+            return way
         # Secant on the closure of the depth; the first step is the plain correction.
         step = -miss
         if previous is not None and previous[1] != miss:
             step = -miss * (depth - previous[0]) / (miss - previous[1])
         previous = (depth, miss)
-        depth += float(np.clip(step, -0.5 * tow.cable.length, 0.5 * tow.cable.length))
+        depth += float(np.clip(step, -0.5 * tow.length, 0.5 * tow.length))
     raise NumericalFailure(
         f"The static shape does not settle: after {_DEPTH_ITERATIONS} iterations the vehicle's depth of "
         f"{depth:.3f} m still misses its own shape by {miss:.3g} m. The current may allow more than one shape."
     )
+
+
+def length_for_depth(tow: Tow, depth: float) -> Tow:
+    """The tow with the shortest upper cable that puts the cable's lower end at `depth` [m]: the two-point form.
+
+    Its own `cable.length` does not matter. The reverse, the depth that a length gives, is `static_shape`.
+
+    Raises
+    ------
+    InvalidInput
+        No length does; says which depths there are.
+    SlackCable
+        The tension falls to zero on the way up.
+    """
+    if not (depth > 0.0 and math.isfinite(depth)):
+        raise InvalidInput(f"The depth must be above 0 m, but it is {depth:g} m.")
+    if tow.current is not None:
+        _check_in_plane(tow.current)
+    lower = tow.length - tow.cable.length
+    way = rise(replace(tow, cable=replace(tow.cable, length=_LONGEST * depth)), depth, to_surface=True)
+    least = depth + float(way.level[way.steps <= lower].max())
+    most = depth + float(way.level.max())
+    length = float(way.steps[-1]) - lower
+    if least > depth or not length > 0.0 or length >= _LONGEST * depth:
+        reach = f"at least {least:.4g} m" if least > depth else f"at most {most:.4g} m"
+        raise InvalidInput(
+            f"No length of the upper cable puts its lower end at {depth:g} m: in the flow at that depth the cable "
+            f"rises {reach} above it. Ask for another depth, or change the weight of the cable or of the vehicle."
+        )
+    return replace(tow, cable=replace(tow.cable, length=length))
+
+
+def travel_time(tow: Tow, shape: StaticShape) -> float:
+    """Time of a transverse wave front down the cable, int ds / sqrt(T/(m + m_a)) [s]."""
+    cable = tow.single_cable("The travel time of a wave")
+    slowness = np.sqrt((cable.mass + cable.added_mass) / shape.T)
+    return float(np.trapezoid(slowness, shape.s))
+
+
+def midpoint_travel_time(tow: Tow, shape: StaticShape) -> float:
+    """The estimate of T section 4.1: L / sqrt(T_mid/m), midpoint tension and no added mass [s]."""
+    cable = tow.single_cable("The travel time of a wave")
+    middle = float(shape.tension_at(0.5 * cable.length))
+    return cable.length * math.sqrt(cable.mass / middle)
+
+
+def flow_at(tow: Tow, z: ArrayLike) -> Floats:
+    """The water's speed relative to the steadily towed frame at height z (negative below the surface) [m/s]."""
+    height = np.asarray(z, dtype=float)
+    ambient = tow.current.at(-height) if tow.current is not None else np.zeros(height.shape)
+    return ambient - tow.speed
+
+
+def _depends_on_depth(tow: Tow) -> bool:
+    sheared = tow.current is not None and tow.current.speed.size > 1
+    return sheared or any(cable.poisson_ratio < 0.5 for cable in tow.cables)
 
 
 def _check_in_plane(current: Current) -> None:
@@ -120,140 +221,49 @@ def _check_in_plane(current: Current) -> None:
         )
 
 
-def travel_time(tow: Tow, shape: StaticShape) -> float:
-    """Time of a transverse wave front down the cable, int ds / sqrt(T/(m + m_a)) [s]."""
-    slowness = np.sqrt((tow.cable.mass + tow.cable.added_mass) / shape.T)
-    return float(np.trapezoid(slowness, shape.s))
+def _equal(length: float, stations: int) -> Floats:
+    if stations < 2:
+        raise InvalidInput(f"A static shape needs at least 2 segments, but {stations} was given.")
+    return np.linspace(0.0, length, stations + 1)
 
 
-def midpoint_travel_time(tow: Tow, shape: StaticShape) -> float:
-    """The estimate of T section 4.1: L / sqrt(T_mid/m), midpoint tension and no added mass [s]."""
-    middle = float(shape.tension_at(0.5 * tow.cable.length))
-    return tow.cable.length * math.sqrt(tow.cable.mass / middle)
-
-
-def flow_at(tow: Tow, z: ArrayLike) -> Floats:
-    """The water's speed relative to the steadily towed frame at height z (negative below the surface) [m/s]."""
-    height = np.asarray(z, dtype=float)
-    ambient = tow.current.at(-height) if tow.current is not None else np.zeros(height.shape)
-    return ambient - tow.speed
-
-
-def end_force(tow: Tow, flow: float) -> tuple[float, float, float]:
-    """Steady pull of the vehicle on the cable's end: force toward +X and up [N], and the pitch [rad].
-
-    The cable pulls back with the opposite force: T (cos phi, sin phi) = -(F_x, F_z).
-    """
-    vehicle = tow.vehicle
-    if isinstance(vehicle, Vehicle):
-        return vehicle.drag(tow.water_density) * flow * abs(flow), -vehicle.weight_in_water, 0.0
-    pitch = _pitch_equilibrium(vehicle, tow.water_density, flow)
-    p, q = towfish_steady_force(vehicle, tow.water_density, flow, pitch)
-    return p * math.cos(pitch) - q * math.sin(pitch), p * math.sin(pitch) + q * math.cos(pitch), pitch
-
-
-def towfish_steady_force(body: Towfish, density: float, flow: float, pitch: float) -> tuple[float, float]:
-    """Weight, buoyancy and drag on a still towfish in body axes (P, Q) [N]: H (15)-(16) without the tension."""
-    u, v = -flow * math.cos(pitch), flow * math.sin(pitch)
-    c = 0.5 * density * body.drag_coefficient * (body.area_p * abs(u) + body.area_q * abs(v))
-    net = body.buoyancy - body.weight
-    return net * math.sin(pitch) - c * u, net * math.cos(pitch) - c * v
-
-
-def _pitch_moment(body: Towfish, density: float, flow: float, pitch: float) -> float:
-    """H (17) at rest, the cable's force being what balances the others [N m]."""
-    p, q = towfish_steady_force(body, density, flow, pitch)
-    u, v = -flow * math.cos(pitch), flow * math.sin(pitch)
-    c = 0.5 * density * body.drag_coefficient * (body.area_p * abs(u) + body.area_q * abs(v))
-    return (
-        body.buoyancy * (body.buoyancy_centre_p * math.cos(pitch) - body.buoyancy_centre_q * math.sin(pitch))
-        - body.tow_point_p * q
-        + body.tow_point_q * p
-        - c * (body.drag_centre_p * v - body.drag_centre_q * u)
-    )
-
-
-def _pitch_equilibrium(body: Towfish, density: float, flow: float) -> float:
-    """The stable pitch angle nearest to zero [rad]."""
-    from scipy.optimize import brentq
-
-    grid = np.linspace(-0.5 * math.pi, 0.5 * math.pi, 721)
-    moment = np.array([_pitch_moment(body, density, flow, a) for a in grid])
-    falls = np.flatnonzero((moment[:-1] > 0.0) & (moment[1:] <= 0.0))
-    if falls.size == 0:
+def _checked(nodes: ArrayLike, length: float) -> Floats:
+    s = np.array(nodes, dtype=float)
+    if s.ndim != 1 or s.size < 3:
+        raise InvalidInput(f"A static shape needs at least 3 nodes on one axis, but they have the shape {s.shape}.")
+    if not np.isfinite(s).all():
+        raise InvalidInput(f"A static shape needs finite nodes, but nodes[{int(np.argmin(np.isfinite(s)))}] is not.")
+    if np.any(np.diff(s) <= 0.0):
+        i = int(np.argmax(np.diff(s) <= 0.0))
         raise InvalidInput(
-            f"The towfish has no stable pitch angle between -90 and 90 degrees in a flow of {flow:g} m/s; the moment "
-            f"runs from {moment.max():.3g} to {moment.min():.3g} N m. Move its tow point or its buoyancy centre up."
+            f"A static shape needs increasing nodes, but nodes[{i}] = {s[i]:g} m and nodes[{i + 1}] = {s[i + 1]:g} m."
         )
-    roots = [brentq(lambda a: _pitch_moment(body, density, flow, a), grid[i], grid[i + 1], xtol=1e-14) for i in falls]
-    return float(min(roots, key=abs))
-
-
-def _depends_on_depth(tow: Tow) -> bool:
-    sheared = tow.current is not None and tow.current.speed.size > 1
-    return sheared or tow.cable.poisson_ratio < 0.5
-
-
-def _integrate_up(tow: Tow, depth: float, stations: int) -> StaticShape:
-    """Classical Runge-Kutta from a vehicle at the given depth; x and z end relative to the tow point."""
-    cable = tow.cable
-    w, nu, EA = cable.weight_in_water, cable.poisson_ratio, cable.axial_stiffness
-    k_n, k_t = cable.normal_drag(tow.water_density), cable.tangential_drag(tow.water_density)
-    squeeze = (1.0 - 2.0 * nu) * tow.water_density * GRAVITY * cable.cross_section / EA
-    h = cable.length / stations
-    constant_flow = None if tow.current is not None and tow.current.speed.size > 1 else float(flow_at(tow, 0.0))
-
-    def flow(z: float) -> float:
-        return constant_flow if constant_flow is not None else float(flow_at(tow, z))
-
-    def slope(s: float, y: tuple[float, float, float, float]) -> tuple[float, float, float, float]:
-        phi, T, _, z = y
-        if not T > 0.0:
-            raise SlackCable(
-                f"The cable goes slack: its static tension falls to {T:.3g} N at s = {s:.1f} m of {cable.length:g} m "
-                "from the vehicle. The weight below that place does not stretch it; add weight or shorten the cable."
-            )
-        sine, cosine, u = math.sin(phi), math.cos(phi), flow(z)
-        e = T / EA + squeeze * min(z, 0.0)
-        c = (1.0 + e) * (1.0 - nu * e)
-        return (
-            (w * cosine + k_n * c * u * sine * abs(u * sine)) / T,
-            w * sine - k_t * c * u * cosine * abs(u * cosine),
-            (1.0 + e) * cosine,
-            (1.0 + e) * sine,
+    if s[0] != 0.0 or not math.isclose(s[-1], length, rel_tol=1e-9):
+        raise InvalidInput(
+            f"A static shape needs nodes from 0 m to the cable's {length:g} m, but they run from {s[0]:g} m to "
+            f"{s[-1]:g} m."
         )
+    return s
 
-    force_x, force_z, pitch = end_force(tow, flow(-depth))
-    T_0 = math.hypot(force_x, force_z)
-    y = (math.atan2(-force_z, -force_x), T_0, 0.0, -depth)
-    rows = [y]
-    for i in range(stations):
-        s = i * h
-        a = slope(s, y)
-        b = slope(s + 0.5 * h, _moved(y, a, 0.5 * h))
-        c = slope(s + 0.5 * h, _moved(y, b, 0.5 * h))
-        d = slope(s + h, _moved(y, c, h))
-        y = (
-            y[0] + h / 6.0 * (a[0] + 2.0 * b[0] + 2.0 * c[0] + d[0]),
-            y[1] + h / 6.0 * (a[1] + 2.0 * b[1] + 2.0 * c[1] + d[1]),
-            y[2] + h / 6.0 * (a[2] + 2.0 * b[2] + 2.0 * c[2] + d[2]),
-            y[3] + h / 6.0 * (a[3] + 2.0 * b[3] + 2.0 * c[3] + d[3]),
+
+def _told(tow: Tow, way: Rise, s: Floats) -> StaticShape:
+    """The shape at the places s, x and z counted from the tow point."""
+    phi, T, x, level, strain = way.at(s)
+    top = float(way.level.max())
+    if top - way.height > _OUT_OF_WATER * tow.length:
+        place = float(way.steps[int(np.argmax(way.level))])
+        raise InvalidInput(
+            f"The cable comes out of the water: at s = {place:.1f} m of {tow.length:g} m from the vehicle it is "
+            f"{top - way.height:.3g} m above the tow point. Give it more length or weight above that place, or less "
+            "buoyancy below it."
         )
-        rows.append(y)
-    phi, T, x, z = np.array(rows).T
     return StaticShape(
-        s=np.linspace(0.0, cable.length, stations + 1),
+        s=s,
         phi=phi,
         T=T,
         x=x - x[-1],
-        z=z - z[-1],
-        strain=T / EA + squeeze * np.minimum(z, 0.0),
-        flow=np.broadcast_to(flow_at(tow, z), z.shape).copy(),
-        pitch=pitch,
+        z=level - level[-1],
+        strain=strain,
+        flow=np.broadcast_to(flow_at(tow, level), level.shape).copy(),
+        pitch=way.pitch,
     )
-
-
-def _moved(
-    y: tuple[float, float, float, float], k: tuple[float, float, float, float], h: float
-) -> tuple[float, float, float, float]:
-    return y[0] + h * k[0], y[1] + h * k[1], y[2] + h * k[2], y[3] + h * k[3]

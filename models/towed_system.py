@@ -13,8 +13,8 @@ from models.tow import Tow
 #: How the drag of a link follows from its angle to the flow: by components, or by W's law of the incidence angle.
 DragLaw = Literal["quadratic", "incidence"]
 
-#: What the part of a planar tow is called.
-FIRST_PART = "vehicle"
+#: What the part of a planar tow is called that ends at its vehicle.
+VEHICLE_PART = "vehicle"
 
 #: Structural damping ratio of a cable that strums.
 StrummingDamping = Annotated[float, Quantity("zeta", "-", lower=0.0, upper=1.0)]
@@ -74,15 +74,23 @@ class TowedSystem:
 
     @classmethod
     def from_tow(cls, tow: Tow, tails: tuple[Part, ...] = ()) -> Self:
-        """The system whose first part, named `FIRST_PART`, is a planar tow; `tails` are the parts after it.
+        """The system of a planar tow, whose vehicle is the body of the part `VEHICLE_PART`; `tails` are after it.
+
+        With sections, the lengths of cable above the last are parts without a body, ``cable`` and ``section-1`` on.
 
         Raises
         ------
         InvalidInput
-            The vehicle has no area, or the parts do not make a system.
+            The vehicle has no area or a thrust, or the parts do not make a system.
         """
-        part = Part(name=FIRST_PART, cable=tow.cable, body=Body.from_vehicle(tow.vehicle))
-        return cls(parts=(part, *tails), water_density=tow.water_density, current=tow.current, speed=tow.speed)
+        *above, last = reversed(tow.cables)
+        joints: list[Part] = []
+        for i, cable in enumerate(above):
+            name = f"section-{i}" if i else "cable"
+            joints.append(Part(name=name, cable=cable, body=None, after=joints[-1].name if joints else None))
+        body = Body.from_vehicle(tow.vehicle)
+        part = Part(name=VEHICLE_PART, cable=last, body=body, after=joints[-1].name if joints else None)
+        return cls(parts=(*joints, part, *tails), water_density=tow.water_density, current=tow.current, speed=tow.speed)
 
 
 def _check_place(part: Part, before: list[str]) -> None:

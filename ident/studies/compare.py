@@ -26,7 +26,7 @@ from models.link_joint import LinkJointResult
 from models.link_joint.steady import equilibrium
 from models.quantity import InvalidInput, NumericalFailure
 from models.spectral import SpectralResult
-from models.tow import Tow
+from models.tow import Tow, refuse_sections_and_thrust
 from models.towed_system import TowedSystem
 from models.trace import Floats, Trace
 from models.vehicle import Towfish
@@ -90,12 +90,14 @@ def compare(
     Raises
     ------
     InvalidInput
-        The place cannot be written, two configurations are called the same, or a body is a towfish.
+        The place cannot be written, two configurations are called the same, a cable has sections, or a body is a
+        towfish.
     """
     names = [each.name for each in configurations]
     if len(set(names)) < len(names):
         raise InvalidInput(f"The configurations to compare on must differ in name, but they are {', '.join(names)}.")
     for each in configurations:
+        refuse_sections_and_thrust(each.tow, "The comparison of the simulators")
         if isinstance(each.tow.vehicle, Towfish):
             raise InvalidInput(
                 f"{each.source} has a [towfish], which pitches in the spectral simulator but not in the chain; give a "

@@ -24,6 +24,7 @@ from models import reduced
 from models.drive import Start
 from models.reduced import Response
 from models.statics import static_shape
+from models.tow import refuse_sections_and_thrust
 from reports.files import write_json, write_parameters, write_scores
 from reports.tow_page import TowMaterial, TowRecord, write_tow_page
 
@@ -67,8 +68,9 @@ def crossval(
     Raises
     ------
     InvalidInput
-        A record cannot be read, two have one name, or a part has fewer than 20 scored samples.
+        A record cannot be read, two have one name, a part has fewer than 20 scored samples, or the cable has sections.
     """
+    refuse_sections_and_thrust(configuration.tow, "The cross-validation of reduced models")
     names = configuration.identification.models
     distinct(records)
     with new_folder(out) as folder:

@@ -14,6 +14,7 @@ from models import reduced
 from models.drive import Start
 from models.reduced import ReducedModel
 from models.statics import static_shape
+from models.tow import refuse_sections_and_thrust
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,8 +49,9 @@ def fit(
     Raises
     ------
     InvalidInput
-        A record cannot be read or scored, or the place cannot be written.
+        A record cannot be read or scored, the place cannot be written, or the cable has sections.
     """
+    refuse_sections_and_thrust(configuration.tow, "The fit of reduced models")
     settings = configuration.identification
     distinct(records)
     with new_file(out) as temporary:

@@ -13,7 +13,7 @@ from ident.configuration import Configuration
 from ident.places import new_file
 from ident.sections import INPUTS
 from ident.settings import Winch, WinchDepth
-from ident.simulators import Reference, answer, describe_chain, needed, recorded
+from ident.simulators import Reference, answer, describe_chain, ends, needed, recorded
 from ident.truth import INPUT, fixes, stream, towed, verification
 from models.drive import Start
 from models.quantity import InvalidInput
@@ -93,7 +93,8 @@ def _truth(
         configuration = replace(configuration, manoeuvre=replace(configuration.manoeuvre, duration=duration))
     check = verification(configuration, seed)
     words = f"the truth of the verification, {check.changed}, by the link-joint simulator with "
-    return recorded(configuration.name, check.ship, check.chain.bodies), words + describe_chain(check.chain)
+    bodies = ends(configuration, check.chain)
+    return recorded(configuration.name, check.ship, bodies), words + describe_chain(check.chain)
 
 
 def _motion(

@@ -26,6 +26,7 @@ from models import reduced
 from models.quantity import NumericalFailure
 from models.reduced import Response
 from models.statics import StaticShape, static_shape
+from models.tow import refuse_sections_and_thrust
 from reports.files import write_json, write_parameters, write_scores, write_traces
 from reports.run_page import write_run_page
 
@@ -49,10 +50,12 @@ def run(
     Raises
     ------
     InvalidInput
-        The place cannot be written, or the configuration leaves too little to score.
+        The place cannot be written, the cable has sections or the vehicle a thrust, or the configuration leaves too
+        little to score.
     NumericalFailure
         The truth cannot be simulated.
     """
+    refuse_sections_and_thrust(configuration.tow, "The study of reduced models")
     names = tuple(models) if models is not None else configuration.identification.models
     configuration = replace(configuration, identification=replace(configuration.identification, models=names))
     with new_folder(out) as folder:

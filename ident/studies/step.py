@@ -16,7 +16,7 @@ from ident.terminal import Progress
 from ident.truth import INPUT, reference_run, stream
 from models.quantity import InvalidInput
 from models.statics import midpoint_travel_time, static_shape, travel_time
-from models.tow import Tow
+from models.tow import Tow, refuse_sections_and_thrust
 from models.trace import Trace
 from models.vehicle import Towfish
 from reports.figures.steps import StepResponse
@@ -43,10 +43,12 @@ def step(configuration: Configuration, *, out: Path, progress: Progress) -> Step
     Raises
     ------
     InvalidInput
-        The place cannot be written, the cable does not hang, or the body is a towfish, whose weight is not one number.
+        The place cannot be written, the cable does not hang or has sections, the vehicle has a thrust, or it is a
+        towfish, whose weight is not one number.
     NumericalFailure
         A simulation fails.
     """
+    refuse_sections_and_thrust(configuration.tow, "The step study")
     if isinstance(configuration.tow.vehicle, Towfish):
         raise InvalidInput(
             "The step study compares weights of a point vehicle, but the configuration has a [towfish]; "

@@ -16,6 +16,7 @@ from ident.terminal import Progress
 from ident.turning import Turning, TurnRun, run_all, ship_heave
 from models.quantity import InvalidInput, NumericalFailure
 from models.strumming import strouhal_frequency
+from models.tow import refuse_sections_and_thrust
 from reports.files import write_json, write_table
 from reports.turn_page import TurnGroup, TurnMaterial, write_turn_page
 
@@ -106,10 +107,12 @@ def turn(
     Raises
     ------
     InvalidInput
-        The place cannot be written, there is no speed, a value is out of bounds, or there are not as many parts.
+        The place cannot be written, there is no speed, a value is out of bounds, there are not as many parts, or the
+        cable has sections.
     NumericalFailure
         Every simulation fails, or one under ship heave.
     """
+    refuse_sections_and_thrust(configuration.tow, "The study of turns")
     for period in heave_periods:
         if not 1.0 <= period <= 3600.0:
             raise InvalidInput(

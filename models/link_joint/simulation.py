@@ -16,7 +16,7 @@ from models.link_joint.steady import equilibrium
 from models.link_joint.track import Track
 from models.payout import Payout, rounded
 from models.quantity import InvalidInput, NumericalFailure
-from models.towed_system import TowedSystem
+from models.towed_system import VEHICLE_PART, TowedSystem
 from models.trace import Trace
 
 Floats = NDArray[np.float64]
@@ -98,8 +98,8 @@ class LinkJointResult:
 
     @property
     def vehicle(self) -> Trace:
-        """The lower end of the first part."""
-        return self.bodies[0]
+        """The lower end of the part that ends at a planar tow's vehicle, else of the first part."""
+        return self.bodies[self.names.index(VEHICLE_PART) if VEHICLE_PART in self.names else 0]
 
 
 def simulate(

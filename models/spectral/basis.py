@@ -14,7 +14,7 @@ from scipy.interpolate import CubicSpline
 
 from models.quantity import InvalidInput
 from models.statics import StaticShape, flow_at, static_shape
-from models.tow import Tow
+from models.tow import Tow, refuse_sections_and_thrust
 from models.vehicle import Vehicle
 
 Floats = NDArray[np.float64]
@@ -140,7 +140,7 @@ def prepare(
     Raises
     ------
     InvalidInput
-        No harmonic, too few stations for the harmonics (aliasing, T 2.6.2), or an unknown option.
+        No harmonic, too few stations for the harmonics (aliasing, T 2.6.2), an unknown option, sections or a thrust.
     SlackCable
         The static tension falls to zero along the cable.
     """
@@ -157,6 +157,7 @@ def prepare(
             f"{harmonics} harmonics need at least {smallest_stations(harmonics)} stations along the cable, but {J} "
             "were given: fewer project the drag wrongly (aliasing). Raise the stations or lower the harmonics."
         )
+    refuse_sections_and_thrust(tow, "The spectral simulator")
     shape = static_shape(tow) if shape is None else shape
     cable = tow.cable
     L = cable.length

@@ -14,7 +14,7 @@ from models.spectral.implicit import march
 from models.spectral.system import BUDGET, DONE, NOT_FINITE, SLACK
 from models.spectral.winch import Winch, control_arrays
 from models.statics import SlackCable, StaticShape, static_shape
-from models.tow import Tow
+from models.tow import Tow, refuse_sections_and_thrust
 from models.trace import Trace
 from models.vehicle import Towfish
 
@@ -114,13 +114,15 @@ def simulate(
     Raises
     ------
     InvalidInput
-        An unknown option, a track out of the plane, missing ship samples, or a resolution that aliases.
+        An unknown option, a track out of the plane, missing ship samples, a resolution that aliases, sections or a
+        thrust.
     SlackCable
         The tension falls to zero: the small deflections about one shape no longer describe the cable.
     NumericalFailure
         The steps do not converge, the step budget runs out, or the error stays above the tolerance.
     """
     _check(ship, tolerance, stepper, start, step)
+    refuse_sections_and_thrust(tow, "The spectral simulator")
     if start == "steady":
         tow = replace(tow, speed=initial_speed(ship))
     shape = static_shape(tow)

@@ -10,9 +10,12 @@ import pytest
 
 from models import link_joint
 from models.current import Current
+from models.link_joint.steady import steady_tow
+from models.statics import static_shape
 from models.tow import Tow
 from models.towed_system import TowedSystem
 from models.trace import Trace
+from models.vehicle import Vehicle
 
 LINKS = 50
 BAR = 1e-3
@@ -136,3 +139,26 @@ def test_both_ends_held(
         misses.append([np.abs(x - place).max(), np.abs(0.5 * (T[1:] + T[:-1]) - tension[1:-1]).max()])
     orders = np.log2(np.array(misses[:-1]) / misses[1:])
     assert (np.abs(orders - 2.0) < 0.2).all(), (misses, orders)
+
+
+@pytest.mark.parametrize("current", [0.05, 0.2, -0.5])
+def test_s_shape_is_that_of_the_statics(configurations: Callable[[str], Tow], current: float) -> None:
+    """A point vehicle on the buoyant and the heavy length: the chain comes to the same S at second order in its links.
+
+    A towfish is another body in the chain, which has it at zero pitch.
+    """
+    vehicle = Vehicle(weight_in_water=530.0, mass=400.0, added_mass=500.0, area=0.25, drag_coefficient=2.0)
+    tow = replace(configurations("s-shape-205"), vehicle=vehicle, current=Current.uniform(current))
+    shape = static_shape(tow, stations=2000)
+    place = np.array([shape.x[0], 0.0, shape.z[0]])
+    misses = []
+    for links in (25, 50, 100, 200):
+        steady = steady_tow(TowedSystem.from_tow(tow), links=links)
+        end = steady.layout.lower_end[-1]
+        misses.append(float(np.linalg.norm(steady.position[end] - place)))
+        # The tension of a link is that of its middle.
+        below, above = 0.5 * steady.layout.chain.length[[end, -1]]
+        np.testing.assert_allclose(steady.tension[[end, -1]], shape.tension_at([below, 205.0 - above]), rtol=2e-3)
+    assert misses[1] < 0.4
+    assert misses[3] < 0.02
+    assert misses[3] < misses[1] / 8.0

@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 from models.cable import Cable
 from models.current import Current
 from models.quantity import GRAVITY
-from models.statics import midpoint_travel_time, static_shape, travel_time
+from models.statics import length_for_depth, midpoint_travel_time, static_shape, travel_time
 from models.tow import Tow
 from models.vehicle import Towfish, Vehicle
 
@@ -24,12 +24,11 @@ def dense_shape(tow: Tow, water: Callable[[float], float], depth: float) -> tupl
 
     Written from the balance of an element: d(T t)/ds = -(weight + drag), without the angle as a state.
     """
-    c, v = tow.cable, tow.vehicle
+    v = tow.vehicle
     assert isinstance(v, Vehicle)
-    area = 0.25 * math.pi * c.diameter**2
 
-    def rate(s: float, y: np.ndarray) -> np.ndarray:
-        T = math.hypot(y[0], y[1])
+    def rate(s: float, y: np.ndarray, c: Cable) -> np.ndarray:
+        T, area = math.hypot(y[0], y[1]), 0.25 * math.pi * c.diameter**2
         t, n = y[:2] / T, np.array([-y[1], y[0]]) / T
         e = (T - (1.0 - 2.0 * c.poisson_ratio) * RHO * GRAVITY * max(-y[3], 0.0) * area) / c.axial_stiffness
         stretched = (1.0 + e) * (1.0 - c.poisson_ratio * e)
@@ -41,9 +40,10 @@ def dense_shape(tow: Tow, water: Callable[[float], float], depth: float) -> tupl
 
     u_0 = water(depth) - tow.speed
     k = 0.5 * RHO * v.area * v.drag_coefficient
-    start = np.array([-k * u_0 * abs(u_0), v.weight_in_water, 0.0, -depth])
-    solution = solve_ivp(rate, (0.0, c.length), start, method="DOP853", rtol=1e-11, atol=1e-8)
-    return start, solution.y[:, -1]
+    start = top = np.array([-k * u_0 * abs(u_0) - v.thrust, v.weight_in_water, 0.0, -depth])
+    for cable in tow.cables:
+        top = solve_ivp(rate, (0.0, cable.length), top, method="Radau", rtol=1e-9, atol=1e-9, args=(cable,)).y[:, -1]
+    return start, top
 
 
 def test_vertical_cable(configurations: Callable[[str], Tow]) -> None:
@@ -169,12 +169,12 @@ def test_pressure_adds_nothing_at_half_and_is_seen_below(configurations: Callabl
     assert half.depth - shape.depth == pytest.approx(2500.0 * 1477.0 / tow.cable.axial_stiffness, rel=0.01)
 
 
-@pytest.mark.parametrize("speed", [0.25, 0.5, 1.0, -1.0])
-def test_towfish_pitch_by_moments_in_the_world_frame(table_two: Tow, speed: float) -> None:
+@pytest.mark.parametrize(("speed", "thrust"), [(0.25, 0.0), (0.5, 0.0), (1.0, 0.0), (-1.0, 0.0), (0.5, -400.0)])
+def test_towfish_pitch_by_moments_in_the_world_frame(table_two: Tow, speed: float, thrust: float) -> None:
     """Force and moment balance of H Table II's towfish, written with world vectors and a numerical search."""
     fish = table_two.vehicle
     assert isinstance(fish, Towfish)
-    shape = static_shape(replace(table_two, speed=speed), stations=10)
+    shape = static_shape(replace(table_two, speed=speed, vehicle=replace(fish, thrust=thrust)), stations=10)
 
     def turned(p: float, q: float, pitch: float) -> np.ndarray:
         return np.array([p * math.cos(pitch) - q * math.sin(pitch), p * math.sin(pitch) + q * math.cos(pitch)])
@@ -185,7 +185,7 @@ def test_towfish_pitch_by_moments_in_the_world_frame(table_two: Tow, speed: floa
         along, across = through @ ahead, through @ up
         size = 0.5 * RHO * 2.0 * (0.25 * abs(along) + 1.0 * abs(across))
         drag = -size * through
-        return drag, -(drag + np.array([0.0, 780.0 - 3920.0]))
+        return drag, -(drag + np.array([thrust, 780.0 - 3920.0]))
 
     def moment(pitch: float) -> float:
         drag, rope = loads(pitch)
@@ -204,3 +204,90 @@ def test_towfish_pitch_by_moments_in_the_world_frame(table_two: Tow, speed: floa
     assert shape.T[0] == pytest.approx(np.hypot(*rope), rel=1e-12)
     assert shape.phi[0] == pytest.approx(math.atan2(rope[1], rope[0]), rel=1e-12)
     assert math.copysign(1.0, -shape.pitch) == math.copysign(1.0, speed)
+
+
+@pytest.mark.parametrize("current", [0.2, -0.5])
+def test_sections_against_dense_integration(configurations: Callable[[str], Tow], current: float) -> None:
+    """An S of three different lengths of cable below a thrusting point vehicle, in a sheared current."""
+    tow = configurations("s-shape-205")
+    rope = replace(tow.cable, length=30.0, diameter=0.03, weight_in_water=0.0, axial_stiffness=1e5)
+    vehicle = Vehicle(weight_in_water=530.0, mass=400.0, added_mass=500.0, area=0.25, drag_coefficient=2.0, thrust=40.0)
+    sheared = Current.from_profile([0.0, 300.0], [current, 0.5 * current])
+    tow = replace(tow, sections=(*tow.sections, rope), vehicle=vehicle, current=sheared)
+
+    def water(depth: float) -> float:
+        return float(np.interp(depth, [0.0, 300.0], [current, 0.5 * current]))
+
+    shape = static_shape(tow)
+    start, top = dense_shape(tow, water, shape.depth)
+    assert top[3] == pytest.approx(0.0, abs=1e-5)
+    assert shape.trail == pytest.approx(top[2], abs=1e-5)
+    assert shape.T[-1] == pytest.approx(math.hypot(top[0], top[1]), rel=1e-7)
+    assert shape.T[0] == pytest.approx(math.hypot(start[0], start[1]), rel=1e-12)
+    assert np.abs(np.diff(shape.phi)).max() < 1.0
+    stiffness = np.where(shape.s <= 30.0, 1e5, tow.cable.axial_stiffness)
+    np.testing.assert_allclose(shape.strain, shape.T / stiffness, rtol=1e-12)
+    # A cable cut in two is the same cable.
+    cut = replace(tow.cable, length=50.0)
+    again = static_shape(replace(tow, cable=replace(tow.cable, length=80.0), sections=(cut, *tow.sections)))
+    for name in ("phi", "T", "x", "z", "strain"):
+        np.testing.assert_allclose(getattr(again, name), getattr(shape, name), rtol=1e-8, atol=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("name", "depth", "share", "pitch"), [("s-shape-205", 100.0, 0.01, 1.0), ("s-shape-205-thrust", 98.7, 0.001, 8.0)]
+)
+def test_static_s_shape_of_example_2(
+    configurations: Callable[[str], Tow], name: str, depth: float, share: float, pitch: float
+) -> None:
+    """H prints a depth of 100 m, tensions of 530 and 840 N, and 8.0 degrees, which one of the two readings meets."""
+    shape = static_shape(configurations(name))
+    assert shape.depth == pytest.approx(depth, rel=share)
+    assert shape.depth == pytest.approx(100.0, rel=0.015)
+    assert shape.T[0] == pytest.approx(530.0, rel=0.01)
+    assert shape.T[-1] == pytest.approx(840.0, rel=0.03)
+    assert math.degrees(shape.pitch) == pytest.approx(pitch, abs=0.3)
+    # Up, over the arc, down, and up again to the ship.
+    turns = np.flatnonzero(np.diff(np.sign(np.diff(shape.z))))
+    assert turns.size == 2
+    assert shape.T[turns[0]] == pytest.approx(shape.T.min(), rel=0.05)
+
+
+def test_s_shape_with_the_weight_of_the_text_does_not_fit(configurations: Callable[[str], Tow]) -> None:
+    tow = configurations("s-shape-205")
+    shape = static_shape(replace(tow, vehicle=replace(tow.vehicle, buoyancy=3420.0)))
+    assert abs(shape.depth - 100.0) > 5.0
+    assert shape.T[0] < 505.0
+    assert shape.T[-1] < 800.0
+
+
+def test_static_swath_4000(configurations: Callable[[str], Tow]) -> None:
+    """The static tensions of H Table IV, 3.14 and 35.70 kN."""
+    shape = static_shape(configurations("swath-4000"))
+    assert (shape.T[0], shape.T[-1]) == pytest.approx((3140.0, 35700.0), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("name", "depth"), [("s-shape-205", 100.0), ("s-shape-205", 60.0), ("mangus-740", 900.0), ("mangus-2500", 80.0)]
+)
+@pytest.mark.parametrize("sheared", [False, True])
+def test_length_for_a_depth_is_the_shortest_that_gives_it(
+    configurations: Callable[[str], Tow], name: str, depth: float, sheared: bool
+) -> None:
+    current = Current.from_profile([0.0, 40.0, 100.0], [0.5, 0.3, 0.1]) if sheared else Current.uniform(0.2)
+    tow = replace(configurations(name), current=current)
+    found = length_for_depth(tow, depth)
+    assert replace(found.cable, length=tow.cable.length) == tow.cable
+    assert found.sections == tow.sections
+    shape = static_shape(found, stations=1000)
+    assert shape.depth == pytest.approx(depth, abs=1e-6)
+    # The way up from that depth is the same for any length: it comes to the surface at its end only.
+    assert shape.z[:-1].max() < 0.0
+
+
+def test_length_for_a_depth_of_a_vertical_cable(configurations: Callable[[str], Tow]) -> None:
+    tow = replace(configurations("mangus-740"), current=None)
+    W, w, EA = 6000.0, tow.cable.weight_in_water, tow.cable.axial_stiffness
+    # L + (W L + w L^2/2)/EA = 1000 m.
+    length = brentq(lambda L: L + (W * L + 0.5 * w * L**2) / EA - 1000.0, 900.0, 1000.0, xtol=1e-10)
+    assert length_for_depth(tow, 1000.0).cable.length == pytest.approx(length, abs=1e-6)

@@ -37,6 +37,35 @@ def test_mirror(configurations: Callable[[str], Tow], speed: float, weight: floa
 
 
 @FEW
+@given(current=st.floats(0.02, 0.6), thrust=st.floats(0.0, 100.0), share=st.floats(0.1, 0.4))
+def test_mirror_of_an_s_shape(
+    configurations: Callable[[str], Tow], current: float, thrust: float, share: float
+) -> None:
+    """Buoyant and heavy lengths and a thrusting towfish, the other way round."""
+    tow = configurations("s-shape-205")
+    (floated,) = tow.sections
+    sections = (replace(floated, length=share * 205.0),)
+    cable = replace(tow.cable, length=(1.0 - share) * 205.0)
+    here, there = (
+        static_shape(
+            replace(
+                tow,
+                cable=cable,
+                sections=sections,
+                vehicle=replace(tow.vehicle, thrust=side * thrust, added_mass_centre_p=0.0, drag_centre_p=0.0),
+                current=Current.uniform(side * current),
+            )
+        )
+        for side in (1.0, -1.0)
+    )
+    np.testing.assert_allclose(here.x, -there.x, atol=1e-7)
+    np.testing.assert_allclose(here.z, there.z, atol=1e-7)
+    np.testing.assert_allclose(here.T, there.T, rtol=1e-9)
+    np.testing.assert_allclose(here.phi, np.pi - there.phi, atol=1e-8)
+    assert abs(here.pitch + there.pitch) < 1e-12
+
+
+@FEW
 @given(speed=speeds, weight=weights)
 def test_a_tow_is_a_current_the_other_way(configurations: Callable[[str], Tow], speed: float, weight: float) -> None:
     tow = scene(configurations("mangus-740"), speed, weight)

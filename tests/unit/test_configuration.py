@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,7 @@ from ident.configuration import Configuration, builtin_names, builtin_text, load
 from ident.schema import keys_of
 from ident.sections import INPUTS, MANOEUVRES, SECTIONS
 from models.quantity import InvalidInput
+from models.tow import Tow
 from models.vehicle import Towfish
 
 BASE = """
@@ -32,6 +34,8 @@ added_mass_kg = 545.0
 area_m2 = 0.52
 drag_coefficient = 1.6
 """
+SECTION = "[[section]]\nlength_m = 75.0\n"
+BY_LENGTH = "mass_per_length_kg_m = 1.03\nweight_in_water_N_m = 7.8\naxial_stiffness_N = 1.4e7\n"
 
 
 def read(text: str) -> Configuration:
@@ -58,6 +62,9 @@ def test_built_in_figures() -> None:
         "mangus-740",
         "multipart-2200",
         "multipart-2200-strumming",
+        "s-shape-205",
+        "s-shape-205-thrust",
+        "swath-4000",
     )
     tow = load("autec-1200").tow
     assert (tow.cable.length, tow.vehicle.weight_in_water, tow.vehicle.mass) == (1200.0, 19170.0, 2240.0)
@@ -65,6 +72,37 @@ def test_built_in_figures() -> None:
     for name, length in (("mangus-740", 740.0), ("mangus-2500", 2500.0)):
         tow = load(name).tow
         assert (tow.cable.length, tow.vehicle.weight_in_water, tow.vehicle.added_mass) == (length, 6000.0, 545.0)
+
+
+def test_swath_4000_is_table_two(table_two: Tow) -> None:
+    own = load("swath-4000")
+    assert own.tow.vehicle == table_two.vehicle
+    given = replace(own.tow.cable, axial_stiffness=table_two.cable.axial_stiffness)
+    assert given == table_two.cable
+    assert own.tow.cable.axial_stiffness == pytest.approx(table_two.cable.axial_stiffness, rel=1e-8)
+    assert own.compensator.mass == 530.0
+    assert own.guesses == ()
+
+
+@pytest.mark.parametrize(
+    ("name", "weight", "thrust", "float_length"),
+    [("s-shape-205", 530.0, 0.0, 75.0), ("s-shape-205-thrust", 524.0, 70.0, 73.75)],
+)
+def test_s_shape_is_table_two_with_a_float(
+    table_two: Tow, name: str, weight: float, thrust: float, float_length: float
+) -> None:
+    own = load(name)
+    tow = own.tow
+    assert isinstance(tow.vehicle, Towfish)
+    assert tow.vehicle == replace(table_two.vehicle, buoyancy=3920.0 - weight, thrust=thrust)
+    assert tow.length == 205.0
+    (floated,) = tow.sections
+    assert (floated.length, floated.weight_in_water) == (float_length, -10.2)
+    assert replace(floated, length=tow.cable.length, weight_in_water=8.14) == tow.cable
+    assert tow.current is not None
+    assert tow.current.at([0.0, 100.0]).tolist() == [0.2, 0.2]
+    assert "towfish.buoyancy_N" in own.guesses
+    assert ("towfish.thrust_N" in own.guesses) == (thrust != 0.0)
 
 
 @pytest.mark.parametrize("name", builtin_names())
@@ -120,6 +158,26 @@ def test_defaults_and_whole_numbers() -> None:
         ("descriptoin = 'x'\n" + BASE, ('descriptoin = "x"', "did you mean description?")),
         ("description2 = 3\ndescription = 4\n", ("description2 = 3",)),
         (BASE + "[[bode]]\n", ("bode = [a table]",)),
+        (BASE + "[section]\nlength_m = 5.0\n", ("section = a table", "[[section]]", "two brackets")),
+        (BASE + "[[section]]\ndiameter_m = 0.02\n", ("[section] (section 1)", "length_m (L)", "above 0 m")),
+        (BASE + SECTION + "[[section]]\nlength_m = -5.0\n", ("[section] (section 2) length_m (L)", "-5.0 m")),
+        (BASE + SECTION + "lenght = 5.0\n", ("[section] (section 1)", "unknown key lenght", "did you mean length_m?")),
+        (
+            BASE + SECTION + "mass_per_length_kg_m = 1.0\ndensity_kg_m3 = 900.0\n",
+            ("[section] (section 1) has mass_per_length_kg_m beside keys of the material",),
+        ),
+        (
+            BASE + "[[section]]\nlength_m = 5.0\npoisson_ratio = 0.6\n",
+            ("[section] (section 1) poisson_ratio (nu)", "0.6"),
+        ),
+        (
+            changed("density_kg_m3 = 4400.0\nyoung_modulus_Pa = 6.2e10\n", BY_LENGTH)
+            + SECTION
+            + "density_kg_m3 = 900.0\n",
+            ("[section] (section 1) lacks the key young_modulus_Pa (E)",),
+        ),
+        (BASE + "[compensator]\nstroke_m = 0.0\n", ("[compensator] stroke_m (R_max)", "above 0 m")),
+        ('guesses = ["section.1.diameter_m"]\n' + BASE + SECTION, ("guesses[0]", "section.1.length_m")),
         (BASE + "[verification]\nkind = 'slow'\n", ("kind", '"starts-and-stops"', '"slow"')),
         (BASE + "[verification]\nlinks = 7\n", ("links (n)", "at least 8", "7.")),
         (BASE + "[verification]\nlinks = true\n", ("links (n)", "a whole number", "true.")),
@@ -177,6 +235,34 @@ def test_cable_by_length_equals_cable_by_material() -> None:
     assert read(text).tow.cable == cable
 
 
+def test_a_section_takes_from_the_cable_what_it_does_not_say() -> None:
+    text = changed("density_kg_m3 = 4400.0\nyoung_modulus_Pa = 6.2e10\n", BY_LENGTH)
+    text += SECTION + "[[section]]\nlength_m = 20.0\nweight_in_water_N_m = -10.2\ntangential_area = 'circumference'\n"
+    tow = read(text).tow
+    first, second = tow.sections
+    assert first == replace(tow.cable, length=75.0)
+    assert second == replace(tow.cable, length=20.0, weight_in_water=-10.2, tangential_area="circumference")
+    assert tow.cables == (second, first, tow.cable)
+    assert tow.length == 1095.0
+    assert read(BASE).tow.cables == (read(BASE).tow.cable,)
+    with pytest.raises(InvalidInput, match="The model needs one uniform cable, but this one has 2 further sections"):
+        tow.single_cable("The model")
+    assert read(BASE).tow.single_cable("The model").length == 1000.0
+
+
+def test_a_section_of_the_same_material_follows_its_diameter() -> None:
+    tow = read(BASE + SECTION + "diameter_m = 0.0346\n").tow
+    (thick,) = tow.sections
+    assert thick.mass == pytest.approx(4.0 * tow.cable.mass)
+    assert thick.axial_stiffness == pytest.approx(4.0 * tow.cable.axial_stiffness)
+    # Only what is given by length departs from the cable.
+    (floated,) = read(BASE + SECTION + "diameter_m = 0.0346\nweight_in_water_N_m = -10.2\n").tow.sections
+    assert (floated.mass, floated.weight_in_water) == (tow.cable.mass, -10.2)
+    (light,) = read(BASE + SECTION + "density_kg_m3 = 900.0\n").tow.sections
+    assert light.axial_stiffness == pytest.approx(tow.cable.axial_stiffness)
+    assert light.weight_in_water < 0.0
+
+
 def test_water_density_reaches_the_cable() -> None:
     fresh = read(changed("= 1025.0", "= 1000.0")).tow
     assert fresh.water_density == 1000.0
@@ -192,6 +278,7 @@ def test_unused_settings_are_listed() -> None:
     assert read(BASE).unused == ()
     text = BASE + "[step]\nspeed_m_s = 0.4\n[inputs.step]\nspeed_m_s = 0.4\n"
     assert read(text).unused == ("step.speed_m_s", "inputs.step.speed_m_s")
+    assert read(BASE + "[compensator]\nmass_kg = 1.0\n").unused == ("compensator.mass_kg",)
     assert "cable.length_m" in read(text).unused_beside({"step"})
     chain = BASE + '[link-joint]\nlinks = 50\ndrag_law = "incidence"\n[verification]\nlinks = 50\n'
     assert read(chain).unused == ("link-joint.links",)
@@ -203,17 +290,24 @@ def test_template_loads_and_names_every_key() -> None:
     read(template())
     named = set(_named(template()))
     for section, keys in SECTIONS.items():
-        if section != "tail.cable":  # the keys of [cable], shown there
+        if section not in ("tail.cable", "section"):  # the keys of [cable], shown there
             assert {(section, key.name) for key in keys} <= named
+    assert ("section", "length_m") in named
     for manoeuvre in MANOEUVRES.values():
         for key in keys_of(manoeuvre):
             assert key.name in template()
 
 
-@pytest.mark.parametrize("section", ["tow", "current", *(f"inputs.{kind}" for kind in INPUTS)])
+@pytest.mark.parametrize("section", ["tow", "current", "compensator", *(f"inputs.{kind}" for kind in INPUTS)])
 def test_sections_left_out_of_the_template_are_valid(section: str) -> None:
     configuration = read(BASE + _section(section))
     assert any(key.startswith(f"{section}.") for key in configuration.given)
+
+
+def test_a_section_of_cable_left_out_of_the_template_is_valid() -> None:
+    text = "[[section]]\n" + _section("section").partition("\n")[2]
+    (floated,) = read(BASE + text).tow.sections
+    assert (floated.length, floated.weight_in_water) == (75.0, -10.2)
 
 
 def test_keys_left_out_of_the_template_are_valid() -> None:
@@ -269,7 +363,7 @@ def _commented_out() -> Iterator[str]:
 def _section(name: str) -> str:
     """A section that the template leaves out, as text."""
     lines = list(_commented_out())
-    start = next(i for i, line in enumerate(lines) if line.startswith(f"[{name}]"))
+    start = next(i for i, line in enumerate(lines) if line.lstrip("[").startswith(f"{name}]"))
     end = next((i for i, line in enumerate(lines) if i > start and line.startswith("[")), len(lines))
     keys = {key.name for key in SECTIONS[name]}
     own = [line for line in lines[start + 1 : end] if line.split(" = ")[0] in keys]

@@ -149,6 +149,43 @@ def test_parts_behind_the_vehicle_are_listed_and_said_to_be_left_out() -> None:
     assert "parts behind the vehicle" not in dict(scene.left_out(load("mangus-740")))
 
 
+def test_sections_thrust_and_compensator_are_in_the_table() -> None:
+    text = BASE + "[[section]]\nlength_m = 75.0\nweight_in_water_N_m = -10.2\n"
+    text += "[[section]]\nlength_m = 5.0\ndiameter_m = 0.03\n[[section]]\nlength_m = 6.0\n"
+    own = configuration(
+        'guesses = ["section.1.length_m", "vehicle.thrust_N"]\n'
+        + text
+        + POINT
+        + "thrust_N = 70.0\n[compensator]\nmass_kg = 530.0\n"
+    )
+    table = scene.configuration_table(own)
+    assert list(dict.fromkeys(table["part"])) == [
+        "cable",
+        "section.1",
+        "section.2",
+        "section.3",
+        "vehicle",
+        "compensator",
+    ]
+    rows = {(row["part"], row["setting"]): row for row in table.to_dict("records")}
+    assert rows["section.1", "length"]["guess"]
+    assert rows["section.1", "weight in water"]["value"] == -10.2
+    assert (rows["vehicle", "thrust"]["value"], rows["vehicle", "thrust"]["unit"]) == (70.0, "N")
+    assert rows["vehicle", "thrust"]["guess"]
+    assert (rows["compensator", "mass"]["value"], rows["compensator", "mass"]["unit"]) == (530.0, "kg")
+    # What follows from the material is told where it is not the cable's.
+    assert rows["section.2", "mass"]["value"] == pytest.approx(own.tow.sections[1].mass)
+    assert "density" in rows["section.2", "weight in water"]["note"]
+    assert ("section.1", "mass") not in rows
+    assert ("section.3", "mass") not in rows
+
+
+def test_an_effect_of_any_section_is_not_left_out() -> None:
+    without = BASE.replace("tangential_drag_coefficient = 0.08", "tangential_drag_coefficient = 0.0") + POINT
+    section = "[[section]]\nlength_m = 75.0\ntangential_drag_coefficient = 0.1\npoisson_ratio = 0.3\n"
+    assert left_out(without) - left_out(without + section) == {"tangential drag", "stretch by water pressure"}
+
+
 def test_a_table_with_inputs_is_made() -> None:
     text = 'guesses = ["inputs.step.speed_m_s"]\n' + BASE + POINT + "[inputs.step]\nspeed_m_s = 0.3\n"
     table = scene.configuration_table(configuration(text))
