@@ -1,0 +1,19 @@
+"""Motions and tensions of a tow under small motions of the cable's top, in the frequency domain (H)."""
+
+from models.transfer_matrix.response import Response, Solver, frequency_response, product_digits
+from models.transfer_matrix.sea import SEA_QUANTITIES, SeaResponse, sea_response
+from models.transfer_matrix.setup import Compensator, Direction, DragForm, UniformDamping
+
+__all__ = [
+    "SEA_QUANTITIES",
+    "Compensator",
+    "Direction",
+    "DragForm",
+    "Response",
+    "SeaResponse",
+    "Solver",
+    "UniformDamping",
+    "frequency_response",
+    "product_digits",
+    "sea_response",
+]
