@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from ident import options
+from ident import frequency_cli, options
 from ident.exits import exit_code
 from ident.options import (
     Budget,
@@ -64,7 +64,9 @@ def list_configurations() -> None:
     rows = []
     for name in builtin_names():
         document = tomllib.loads(builtin_text(name))
-        length, weight = document["cable"]["length_m"], document["vehicle"]["weight_in_water_N"]
+        length = document["cable"]["length_m"] + sum(section["length_m"] for section in document.get("section", []))
+        fish = document.get("towfish")
+        weight = fish["weight_N"] - fish["buoyancy_N"] if fish else document["vehicle"]["weight_in_water_N"]
         row = {"name": name, "length_m": f"{length:g}", "weight_in_water_N": f"{weight:g}"}
         rows.append(row | {"description": document["description"]})
     write_table(rows)
@@ -379,6 +381,9 @@ def gallery(out: Out = Path("reports/gallery"), quiet: Quiet = False) -> None:
 
     with progress(quiet=quiet) as report:
         study.gallery(out=out, progress=report)
+
+
+frequency_cli.add_to(app)
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -56,7 +56,7 @@ def write_table(path: Path, frame: pd.DataFrame, columns: Sequence[str] | None =
         Significant digits of the numbers.
     """
     chosen = frame if columns is None else frame.loc[:, list(columns)]
-    lines = [",".join(str(name) for name in chosen.columns)]
+    lines = [",".join(_text(str(name), digits) for name in chosen.columns)]
     texts = [[_text(value, digits) for value in chosen[name].tolist()] for name in chosen.columns]
     lines += [",".join(row) for row in zip(*texts, strict=True)]
     path.parent.mkdir(parents=True, exist_ok=True)

@@ -82,6 +82,9 @@ def test_list_shows_name_length_weight_and_description(capsys: Capture) -> None:
     assert heading.split() == ["name", "length_m", "weight_in_water_N", "description"]
     assert [line.split()[0] for line in lines] == list(builtin_names())
     assert lines[0].split()[1:3] == ["1200", "19170"]
+    told = {line.split()[0]: line.split()[1:3] for line in lines}
+    assert told["s-shape-205"] == ["205", "530"]
+    assert told["swath-4000"] == ["4000", "3140"]
 
 
 @pytest.mark.parametrize("name", builtin_names())
