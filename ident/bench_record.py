@@ -1,7 +1,8 @@
 """What the benchmark collects on the way: rows, targets, and what it left out for lack of time."""
 
+import math
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from ident.terminal import Progress
@@ -19,6 +20,20 @@ COLUMNS = (
     "repetitions",
     "spread",
 )
+#: Columns of frequency.csv, which has no simulated time: `seconds` are those of one call.
+FREQUENCY_COLUMNS = (
+    "configuration",
+    "part",
+    "setting",
+    "frequencies",
+    "segments",
+    "tolerance",
+    "solves",
+    "error_share",
+    "seconds",
+    "repetitions",
+    "spread",
+)
 HOUR = 3600.0
 
 
@@ -30,6 +45,7 @@ class Record:
     budget: float
     begun: float = field(default_factory=time.perf_counter)
     rows: list[tuple[Any, ...]] = field(default_factory=list)
+    frequency_rows: list[tuple[Any, ...]] = field(default_factory=list)
     cut: list[tuple[str, str]] = field(default_factory=list)
     targets: list[dict[str, Any]] = field(default_factory=list)
     compile_s: dict[str, float] = field(default_factory=dict)
@@ -61,6 +77,27 @@ class Record:
         self.rows.append(
             (configuration, method, setting, kind, error, hour, compiled, timing.repetitions, timing.spread)
         )
+
+    def untimed(self, configuration: str, method: str, setting: str, kind: str, error: float, timing: Timing) -> None:
+        """A row of bench.csv of a method without simulated time, which leaves the seconds an hour empty."""
+        self.row(configuration, method, setting, kind, error, replace(timing, seconds=math.nan))
+
+    def call(
+        self,
+        configuration: str,
+        part: str,
+        timing: Timing,
+        setting: str = "",
+        frequencies: int | None = None,
+        segments: int | None = None,
+        tolerance: float = math.nan,
+        solves: int | None = None,
+        share: float = math.nan,
+    ) -> None:
+        """A row of frequency.csv; the timing is of one call, `share` an error over the largest amplitude."""
+        run = (frequencies, segments, tolerance, solves, share)
+        taken = (timing.seconds, timing.repetitions, timing.spread)
+        self.frequency_rows.append((configuration, part, setting, *run, *taken))
 
     def target(self, what: str, asked: str, found: str, met: bool) -> None:
         """A row of the table of targets."""

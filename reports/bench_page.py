@@ -7,10 +7,11 @@ from typing import Any
 
 import pandas as pd
 
-from reports import sections
+from reports import matrix_bench, sections
 from reports.figures import bench
 from reports.figures.bench import Curve, Sizes
 from reports.markdown import Page
+from reports.matrix_bench import MatrixMaterial
 from reports.style import Album
 
 
@@ -63,6 +64,8 @@ class BenchMaterial:
         What the turn is, in a sentence.
     peer_note
         The peer's version and how its settings were found, or how to install it.
+    matrix
+        The part on the matrix method.
     cut
         (what, why) was left out.
     compile_s
@@ -80,6 +83,7 @@ class BenchMaterial:
     turns: pd.DataFrame
     turn_words: str
     peer_note: str
+    matrix: MatrixMaterial
     compile_s: float
     cut: Sequence[tuple[str, str]] = ()
     configuration_text: str = ""
@@ -164,6 +168,7 @@ def write_bench_page(folder: Path, material: BenchMaterial) -> None:
             "order, as the chain's is, takes the dense form two evaluations; the last column counts both.",
         )
         page.table(material.dense, _DENSE)
+    matrix_bench.write(page, album, material.matrix)
     if material.cut:
         page.heading("Left out")
         page.bullets(f"{what}: {why}" for what, why in material.cut)

@@ -1,4 +1,4 @@
-"""The benchmark: error against run time of the link-joint simulator, how it grows, and MoorDyn on the same tows."""
+"""The benchmark: error against run time of the link-joint simulator and of the matrix method, and how it grows."""
 
 import math
 from collections.abc import Sequence
@@ -8,8 +8,8 @@ from typing import Any
 
 import pandas as pd
 
-from ident import chain_bench, peer_bench, peers, tows_compared
-from ident.bench_record import COLUMNS, HOUR, Record
+from ident import chain_bench, matrix_record, peer_bench, peers, tows_compared, transfer_bench
+from ident.bench_record import COLUMNS, FREQUENCY_COLUMNS, HOUR, Record
 from ident.chain_bench import FULL, ChainTow, Effort
 from ident.configuration import Configuration
 from ident.manifest import manifest
@@ -19,6 +19,7 @@ from ident.places import new_folder
 from ident.terminal import Progress
 from ident.timing import Timing, front
 from models.quantity import InvalidInput, NumericalFailure
+from models.tow import refuse_sections_and_thrust
 from models.towed_system import TowedSystem
 from models.trace import Trace
 from reports.bench_page import BenchMaterial, Diagram, write_bench_page
@@ -51,6 +52,7 @@ def bench(
     progress: Progress,
     budget: float = BUDGET,
     effort: Effort = FULL,
+    frequencies: transfer_bench.Effort = transfer_bench.FULL,
 ) -> BenchResult:
     """Measure and write the page, its figures and the tables.
 
@@ -60,14 +62,18 @@ def bench(
         The first of them also gives the cable for growth and for the dense form.
     budget
         Wall time [s]; what would go past it is left out and listed.
+    effort, frequencies
+        How much is run of the chain, and of the matrix method.
 
     Raises
     ------
     InvalidInput
-        The place cannot be written.
+        The place cannot be written, or a cable has sections.
     NumericalFailure
         A simulation of the chain fails on a tow.
     """
+    for each in configurations:
+        refuse_sections_and_thrust(each.tow, "The benchmark")
     run = Record(progress=progress, budget=budget)
     first = configurations[0]
     with new_folder(out) as folder:
@@ -75,8 +81,11 @@ def bench(
         system = first.system_of(1)
         run.compiled(_CHAIN, chain_bench.first_call(system))
         sizes, dense = _growth(run, effort, first, system), _dense(run, effort, first, system)
+        matrix = matrix_record.measure(run, frequencies, configurations)
         turns = pd.DataFrame([row for each in configurations for row in _turns(run, effort, each)])
         diagrams = [_diagram(run, effort, each) for each in configurations]
+        matrix = matrix_record.simulated(run, frequencies, matrix)
+        matrix = matrix_record.compiled_anew(run, frequencies, matrix)
         names = [each.name for each in configurations]
         told = manifest("bench", first, None, configurations=names, moordyn=peers.version() or "not installed")
         progress("drawing the page", 0.99)
@@ -92,6 +101,7 @@ def bench(
             f"{effort.turn_duration:g} s, against a run with {chain_bench.FINER} times the links: the largest error "
             "of any body at any time.",
             peer_note=_peer_note(),
+            matrix=matrix,
             compile_s=run.compile_s[_CHAIN],
             cut=run.cut,
             configuration_text=first.text,
@@ -99,7 +109,8 @@ def bench(
         )
         write_bench_page(folder, material)
         write_table(folder / "bench.csv", pd.DataFrame(run.rows, columns=list(COLUMNS)))
-        for name, table in (("turn", turns), ("dense", dense)):
+        frequency = pd.DataFrame(run.frequency_rows, columns=list(FREQUENCY_COLUMNS))
+        for name, table in (("turn", turns), ("dense", dense), ("frequency", frequency)):
             if len(table):
                 write_table(folder / f"{name}.csv", table)
         write_json(

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pandas as pd
 
+from data_synth.spectra import SEA_STATES
 from ident import thesis
 from ident.configuration import Configuration, load
 from ident.costs import cost_summary, costs
@@ -19,6 +20,9 @@ from ident.scores import model_row, scores_table
 from ident.studies import run as study
 from ident.studies.bench import bench
 from ident.studies.compare import compare
+from ident.studies.compensator import VESSEL, compensator
+from ident.studies.response import response
+from ident.studies.sea import sea
 from ident.studies.step import step
 from ident.studies.turn import answer_claims
 from ident.terminal import Progress
@@ -29,6 +33,21 @@ from reports.markdown import Page
 NAMES = COMPARED
 STEP_NAME = "mangus-2500"
 TURN_NAME = "multipart-2200"
+#: Frequencies of the responses [rad/s], those of H Example 2.
+RESPONSE_BAND = (0.05, 1.5)
+#: Folder of each study, and how many shares of the time are left when it begins.
+_STUDIES = {
+    "simulators-compared": 2.2,
+    "step-study": 2.0,
+    "turning-study": 1.9,
+    "response-swath-4000": 0.9,
+    "response-s-shape-205": 0.85,
+    "response-s-shape-205-thrust": 0.8,
+    "sea-swath-4000": 0.75,
+    "compensator-swath-4000-state-5": 0.7,
+    "compensator-swath-4000-state-6": 0.65,
+    "benchmark": 0.6,
+}
 SEEDS = (0, 1, 2, 3, 4)
 
 _HEADINGS = {
@@ -65,19 +84,45 @@ def gallery(*, out: Path, progress: Progress, names: Sequence[str] = NAMES, seed
             tables.append(errors_over_seeds(configuration, seeds, inside).assign(configuration=name))
         spent = pd.concat([costs(load(name), seeds) for name in names], ignore_index=True)
         write_table(folder / "costs.csv", spent, digits=4)
-        progress("simulators compared", 1.0 - 2.2 * share)
-        compare([load(name) for name in names], out=folder / "simulators-compared", progress=_silent)
-        progress("step study", 1.0 - 2.0 * share)
-        step(load(STEP_NAME), out=folder / "step-study", progress=_silent)
-        progress("turning study", 1.0 - 1.9 * share)
-        answer_claims(load(TURN_NAME), out=folder / "turning-study", progress=_silent)
-        progress("benchmark", 1.0 - 0.7 * share)
-        bench([load(name) for name in BENCHED], out=folder / "benchmark", progress=_silent)
+        for place, begun in _STUDIES.items():
+            progress(place.replace("-", " "), 1.0 - begun * share)
+            _study(place, names, folder / place)
         errors = pd.concat(tables, ignore_index=True)
         write_table(folder / "errors-over-seeds.csv", errors, digits=6)
         _page(folder, names, seeds, summary(errors), cost_summary(spent))
         write_json(folder / MANIFEST, {"program": "cable-ident", "command": "gallery", "versions": versions()})
         progress("done", 1.0)
+
+
+def _study(place: str, names: Sequence[str], out: Path) -> None:
+    """One of the studies."""
+    if place == "simulators-compared":
+        compare([load(name) for name in names], out=out, progress=_silent)
+    elif place == "step-study":
+        step(load(STEP_NAME), out=out, progress=_silent)
+    elif place == "turning-study":
+        answer_claims(load(TURN_NAME), out=out, progress=_silent)
+    elif place == "benchmark":
+        bench([load(name) for name in BENCHED], out=out, progress=_silent)
+    elif place.startswith("response-"):
+        low, high = RESPONSE_BAND
+        named = load(place.removeprefix("response-"))
+        response(named, amplitude=1.0, low=low, high=high, points=200, out=out, progress=_silent)
+    elif place.startswith("sea-"):
+        state = SEA_STATES[6]
+        sea(
+            load(place.removeprefix("sea-")),
+            spectrum="bretschneider",
+            height=state.height,
+            peak_period=state.peak_period,
+            rao=VESSEL,
+            time_domain=True,
+            out=out,
+            progress=_silent,
+        )
+    else:
+        name, state_number = place.removeprefix("compensator-").rsplit("-state-", 1)
+        compensator(load(name), sea_state=int(state_number), time_domain=True, out=out, progress=_silent)
 
 
 def _silent(stage: str, done: float) -> None:
@@ -124,10 +169,11 @@ def _page(folder: Path, names: Sequence[str], seeds: Sequence[int], table: pd.Da
     page.paragraph(
         f"Made by `cable-ident gallery` on {time.strftime('%Y-%m-%d', time.gmtime())}: one page a built-in "
         "configuration with seed 0, the step study, the turning study of a tow of three parts, the two reference "
-        "simulators compared, the benchmark of the link-joint simulator, and below the velocity errors over the seeds "
-        f"{', '.join(map(str, seeds))} of the standard input, each with its own verification truth."
+        "simulators compared, responses, a sea and tuned heave compensators by the matrix method, the benchmark, and "
+        f"below the velocity errors over the seeds {', '.join(map(str, seeds))} of the standard input, each with its "
+        "own verification truth."
     )
-    places = [*names, "step-study", "turning-study", "simulators-compared", "benchmark"]
+    places = [*names, *_STUDIES]
     page.bullets([f"[{place}]({place}/report.md)" for place in places])
     page.heading("Velocity errors over seeds")
     page.table(table, _HEADINGS, {"median": ".4f", "worst": ".4f", "thesis": ".4f"})

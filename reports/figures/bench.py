@@ -10,7 +10,7 @@ from reports import style
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Curve:
-    """One method on one tow: (error [m/s], seconds an hour) of all its settings, and of those that are best."""
+    """One method on one tow: (error [m/s], time [s]) of all its settings, and of those that are best."""
 
     tow: str
     label: str
@@ -20,7 +20,7 @@ class Curve:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sizes:
-    """Times [s] and Newton iterations a step against a size, and the exponent fitted to the larger half."""
+    """Times [s] and iterations, of a step or of a frequency, against a size; the exponent fitted to the larger half."""
 
     what: str
     sizes: Sequence[float]
@@ -29,7 +29,7 @@ class Sizes:
     exponent: float
 
 
-def work_precision(curves: Sequence[Curve]) -> Figure:
+def work_precision(curves: Sequence[Curve], time: str = "CPU time for an hour, s") -> Figure:
     """A panel for each tow: every setting a point, the best of each method joined by a line."""
     tows = list(dict.fromkeys(curve.tow for curve in curves))
     labels = list(dict.fromkeys(curve.label for curve in curves))
@@ -43,7 +43,7 @@ def work_precision(curves: Sequence[Curve]) -> Figure:
             axes.plot(*zip(*curve.every, strict=True), linestyle="none", markersize=2.0, alpha=0.5, **look)
             axes.plot(*zip(*curve.best, strict=True), linestyle=style.DASHES[i % 6], label=curve.label, **look)
         axes.set(xscale="log", yscale="log", title=tow, xlabel="RMS velocity error, m/s")
-    grid[0, 0].set_ylabel("CPU time for an hour, s")
+    grid[0, 0].set_ylabel(time)
     grid[0, 0].legend(loc="best")
     return made
 

@@ -10,14 +10,15 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from ident import chain_bench, peers
-from ident.bench_record import COLUMNS
+from ident import chain_bench, peers, transfer_bench
+from ident.bench_record import COLUMNS, FREQUENCY_COLUMNS
 from ident.chain_bench import REDUCED
 from ident.configuration import load
 from ident.studies.bench import bench
 from models.tow import Tow
 from models.towed_system import TowedSystem
 
+FEW = transfer_bench.REDUCED
 TINY = replace(REDUCED, links=(4, 6), tolerances=(1e-2,), growth_links=(8, 16), growth_lengths=(60.0, 120.0))
 
 
@@ -32,7 +33,9 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(peers, "version", lambda: None)
         names = ["autec-1200", "multipart-2200"]
-        result = bench([load(name) for name in names], out=out, progress=quiet, budget=1000.0, effort=TINY)
+        result = bench(
+            [load(name) for name in names], out=out, progress=quiet, budget=1000.0, effort=TINY, frequencies=FEW
+        )
     assert result.folder == out
     assert {"target", "asked", "found", "met"} == set(result.table[0])
     return out
@@ -41,6 +44,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_every_setting_has_a_row(folder: Path) -> None:
     table = pd.read_csv(folder / "bench.csv")
     assert tuple(table.columns) == COLUMNS
+    table = table[table["method"] == "link-joint"]
     precision = table[~table["error_kind"].str.startswith("growth")]
     assert len(precision) == 2 * 3 * 2
     assert (precision["error_rms_velocity_m_s"] > 0.0).all()
@@ -49,6 +53,36 @@ def test_every_setting_has_a_row(folder: Path) -> None:
     # Twice the tow, six links instead of four: the error falls, nearly as the square.
     for _, pair in precision.groupby(["configuration", precision["setting"].str.partition(":")[0]]):
         assert pair["error_rms_velocity_m_s"].iloc[1] < 0.8 * pair["error_rms_velocity_m_s"].iloc[0]
+
+
+def test_the_matrix_method_has_rows_without_simulated_time(folder: Path) -> None:
+    table = pd.read_csv(folder / "bench.csv")
+    matrix = table[table["method"] == "matrix"]
+    assert matrix["seconds_per_hour"].isna().all()
+    precision = matrix[~matrix["error_kind"].str.startswith("growth")]
+    names = ["s-shape-205", "swath-4000", "autec-1200", "multipart-2200"]
+    assert precision["configuration"].unique().tolist() == names
+    for _, pair in precision.groupby("configuration"):
+        assert pair["error_rms_velocity_m_s"].iloc[0] > 2.5 * pair["error_rms_velocity_m_s"].iloc[1] > 0.0
+
+
+def test_the_seconds_of_the_matrix_method(folder: Path) -> None:
+    table = pd.read_csv(folder / "frequency.csv")
+    assert tuple(table.columns) == FREQUENCY_COLUMNS
+    assert (table["seconds"] > 0.0).all()
+    parts = table[table["part"] == "paper's run"].set_index("setting")["seconds"]
+    whole, inside = parts["whole run"], ["mesh", "steady shape", "solves of all frequencies"]
+    assert all(parts[name] < whole for name in inside)
+    sea = table[table["part"].str.startswith("sea state")]
+    assert sea["configuration"].unique().tolist() == ["swath-4000"]
+    assert len(sea) == 3
+    solvers = table[(table["part"] == "one solve of all") & (table["setting"] == "stable sweep")]
+    assert solvers["error_share"].max() < 1e-10
+    page = (folder / "report.md").read_text(encoding="utf-8")
+    for heading in ("Operations of one iteration", "What the tolerance leaves", "Against the simulation"):
+        assert heading in page
+    for figure in ("matrix-precision", "matrix-growth"):
+        assert (folder / "figures" / f"{figure}.png").stat().st_size > 1000
 
 
 def test_the_turn_is_run_with_each_number_of_parts(folder: Path) -> None:
@@ -70,12 +104,13 @@ def test_the_page_names_what_is_missing(folder: Path) -> None:
 
 
 def test_what_the_budget_cuts_is_listed(tmp_path: Path) -> None:
-    bench([load("multipart-2200")], out=tmp_path / "out", progress=quiet, budget=0.0, effort=TINY)
+    bench([load("multipart-2200")], out=tmp_path / "out", progress=quiet, budget=0.0, effort=TINY, frequencies=FEW)
     page = (tmp_path / "out" / "report.md").read_text(encoding="utf-8")
     left_out = page[page.index("## Left out") : page.index("## Manifest")]
-    for what in ("growth", "the dense form", "the turn with 3 parts"):
+    for what in ("growth", "the dense form", "the turn with 3 parts", "the paper's run of the matrix method"):
         assert what in left_out
     assert not (tmp_path / "out" / "turn.csv").exists()
+    assert not (tmp_path / "out" / "frequency.csv").exists()
 
 
 def test_growth_is_per_doubling() -> None:
