@@ -48,6 +48,8 @@ class ResponseMaterial:
         As of `reports.figures.responses.digits`.
     map_segments
         Of every cable on the map.
+    slow
+        Columns ``flow_m_s, consistent, printed``: errors of the limit of slow motion; empty for none.
     flow
         The current that these are in instead of still water [m/s]; 0 for the tow as configured.
     left_out, unused, configuration, configuration_text, manifest
@@ -82,6 +84,7 @@ class ResponseMaterial:
     lengths_of: str
     map_segments: int
     flow: float = 0.0
+    slow: pd.DataFrame = field(default_factory=pd.DataFrame)
     description: str = ""
     configuration: pd.DataFrame = field(default_factory=pd.DataFrame)
     configuration_text: str = ""

@@ -43,6 +43,9 @@ _CONVENTION_FORMATS = {name: _THREE for name in _CONVENTIONS if name.endswith("r
 }
 
 
+_SLOW = {"flow_m_s": "flow at the top, m/s", "consistent": "consistent", "printed": "as printed"}
+
+
 def write_response_page(folder: Path, material: ResponseMaterial) -> None:
     """Write ``report.md`` and its ``figures`` into an existing folder."""
     page, album = Page(material.title), Album(folder)
@@ -180,6 +183,20 @@ def _trust(page: Page, album: Album, material: ResponseMaterial) -> None:
         page.table(shown, formats={"segments": ".0f", "order": _TWO})
     if len(material.kept):
         _digits(page, album, material)
+    if len(material.slow):
+        _slow(page, material.slow)
+
+
+def _slow(page: Page, table: pd.DataFrame) -> None:
+    """The limit of slow motion by both forms of the drag."""
+    page.heading("Slow motion", 3)
+    page.paragraph(
+        "A top that moves ever more slowly leaves the tow in the steady shape of its speed: the part of the dynamic "
+        "tension in phase with the velocity must become the derivative of the static tension by the flow. How far it "
+        "is from that, over the largest derivative along the cable, with the drag of the moved angle (consistent; what "
+        "is left is the mesh's) and with that of the static angle (as the paper prints it):"
+    )
+    page.table(table, _SLOW, {"flow_m_s": ".3g", "consistent": ".1e", "printed": ".2g"})
 
 
 def _fineness(bends: pd.DataFrame) -> list[str]:

@@ -36,6 +36,7 @@ from ident.response_tables import (
     slack_ratio,
     statics_table,
 )
+from ident.slow_motion import slow_table
 from ident.terminal import Progress
 from models.quantity import InvalidInput
 from models.statics import StaticShape, length_for_depth
@@ -126,6 +127,7 @@ def response(
         passed, plain = in_flow(tow), {name: settings[name] for name in ("amplitude", "direction", "drag")}
         kept = digits_table(passed, omega, plain)
         agreement = agreement_table(passed, omega, own.shape.s, plain)
+        slow = slow_table(tow)
         progress("drawing the page", 0.9)
         runs = [(f"C_t {_AREAS[tow.cable.tangential_area]} (this run)", own), *others]
         name = configuration.name if depth is None else ""
@@ -175,6 +177,7 @@ def response(
                 agreement=agreement,
                 lengths_of="Cable" if not tow.sections else "Upper cable",
                 flow=0.0 if passed is tow else FLOW,
+                slow=slow,
                 map_segments=MAP_SEGMENTS,
                 configuration=scene.configuration_table(configuration),
                 configuration_text=configuration.text,
@@ -190,6 +193,7 @@ def response(
         write_table(folder / "conventions.csv", table)
         write_table(folder / "segments.csv", refinement)
         write_table(folder / "digits.csv", kept)
+        write_table(folder / "slow-motion.csv", slow)
         if len(printed):
             write_table(folder / "printed.csv", printed)
         write_json(folder / "manifest.json", made)

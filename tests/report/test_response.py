@@ -159,6 +159,15 @@ def test_the_segments_are_fine_enough_for_the_tight_arc(study: Callable[..., Res
     assert f"{place:.1f} m from the vehicle, it is" in page(study("s-shape-205-thrust", points=MANY))
 
 
+def test_slow_motion_is_the_derivative_of_the_statics_but_as_printed(study: Callable[..., ResponseResult]) -> None:
+    for name, flow in {"swath-4000": 2.0, "s-shape-205-thrust": 0.2}.items():
+        slow = table(study(name, points=60 if name == "swath-4000" else MANY), "slow-motion").set_index("flow_m_s")
+        assert flow in slow.index
+        assert slow["consistent"].max() < 1e-4
+        assert slow.loc[flow, "printed"] > 10.0 * slow["consistent"].max()
+    assert "### Slow motion" in page(study("swath-4000"))
+
+
 def test_the_product_of_matrices_loses_its_digits_and_the_stable_solve_does_not(
     study: Callable[..., ResponseResult],
 ) -> None:
