@@ -146,8 +146,8 @@ def _harmonics(page: Page, harmonics: pd.DataFrame) -> None:
     page.paragraph(
         "A single frequency at a time, with the sea's RMS motion of the cable's top, "
         f"an amplitude of {significant(amplitude)} m: amplitudes of the chain's first harmonic, once it is periodic, "
-        "beside those of the matrix method. Drag is linearised for one sinusoid here, so that what differs more in the sea is "
-        "the linearisation for a normal process."
+        "beside those of the matrix method. Drag is linearised for one sinusoid here, so that what differs more in the "
+        "sea is the linearisation for a normal process."
     )
     formats = {
         "difference_percent": "+.2f",
