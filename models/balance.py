@@ -13,6 +13,9 @@ from models.quantity import InvalidInput
 from models.tow import Tow
 from models.vehicle import Towfish, Vehicle
 
+#: How far past a quarter turn a towfish may rest [rad].
+_BEYOND = 1e-3
+
 _Number = TypeVar("_Number", float, NDArray[np.float64])
 
 
@@ -68,12 +71,15 @@ def _pitch_equilibrium(body: Towfish, density: float, flow: float) -> float:
         return _loads(body, density, flow, math.sin(pitch), math.cos(pitch))[2]
 
     grid = np.linspace(-0.5 * math.pi, 0.5 * math.pi, 721)
+    # A towfish that hangs by its nose rests at the end itself, where rounding decides.
+    grid = np.concatenate([grid[:1] - _BEYOND, grid, grid[-1:] + _BEYOND])
     moment = _loads(body, density, flow, np.sin(grid), np.cos(grid))[2]
     falls = np.flatnonzero((moment[:-1] > 0.0) & (moment[1:] <= 0.0))
     if falls.size == 0:
         raise InvalidInput(
-            f"The towfish has no stable pitch angle between -90 and 90 degrees in a flow of {flow:g} m/s; the moment "
-            f"runs from {moment.max():.3g} to {moment.min():.3g} N m. Move its tow point or its buoyancy centre up."
+            f"The towfish has no stable pitch angle between -90 and 90 degrees in a flow of {flow + 0.0:g} m/s; the "
+            f"moment runs from {moment.max():.3g} to {moment.min():.3g} N m. Move its tow point or its buoyancy "
+            "centre up."
         )
     roots = [brentq(moment_at, grid[i], grid[i + 1], xtol=1e-14) for i in falls]
     return float(min(roots, key=abs))

@@ -1,5 +1,6 @@
 """What the statics refuse, and how; the places that a shape is told at."""
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -128,3 +129,9 @@ def test_a_cable_that_levels_out_does_not_reach_the_surface(configurations: Call
     across = replace(tow, current=Current.uniform(0.3, 1.0))
     with pytest.raises(InvalidInput, match="across it"):
         length_for_depth(across, 100.0)
+
+
+def test_a_towfish_may_hang_by_its_nose(table_two: Tow) -> None:
+    """A tow point ahead of the centre of mass and nothing else: it hangs nose up, a quarter turn from level."""
+    fish = replace(table_two.vehicle, tow_point_p=1.0, tow_point_q=0.0, buoyancy_centre_q=0.0, drag_centre_p=0.0)
+    assert static_shape(replace(table_two, vehicle=fish)).pitch == pytest.approx(0.5 * math.pi, abs=1e-6)
