@@ -18,6 +18,8 @@ from models.trace import Floats
 #: Part of a sea's variance that may lie outside a table, where the vessel is taken not to move.
 OUTSIDE = 1e-3
 _REQUIRED = ("omega_rad_s", "heave_m_m")
+#: Phases beyond two turns are taken for degrees [rad].
+_MOST_PHASE = 4.0 * np.pi
 _OPTIONAL = ("heave_phase_rad", "surge_m_m", "surge_phase_rad")
 
 
@@ -63,6 +65,12 @@ class Rao:
                 i = int(np.argmax(bad))
                 raise InvalidInput(
                     f"An RAO needs finite values, amplitudes from 0 on, but {name}[{i}] is {values[i]:g}."
+                )
+            if name.endswith("phase") and np.any(np.abs(values) > _MOST_PHASE):
+                i = int(np.argmax(np.abs(values) > _MOST_PHASE))
+                raise InvalidInput(
+                    f"An RAO needs phases in radians, at most two turns, but {name}[{i}] is {values[i]:g}; degrees "
+                    "times pi/180 are radians."
                 )
             values.setflags(write=False)
             object.__setattr__(self, name, values)

@@ -9,6 +9,7 @@ from ident.configuration import Configuration
 from ident.printed_compensators import TABLE_THREE, TableThree
 from models.compensator import Setting, Tuning, dynamic_stiffness, relative_limit, tune
 from models.response_statistics import significant
+from models.transfer_matrix import frequency_response
 from models.transfer_matrix.axial import AxialResponse, AxialString, axial_response, compensated_response
 from reports.figures.compensators import MAPPED, ResponseMap
 
@@ -19,7 +20,9 @@ _SEARCHED = np.arange(0.40, 0.8001, 0.001)
 
 
 def axial_at(configuration: Configuration, omega: float, sigma: float) -> AxialResponse:
-    """The closed form at one frequency, its drag linearised at half the significant height times it.
+    """The response at one frequency, its drag linearised at half the significant height times it.
+
+    The closed form for one uniform cable that hangs straight; the matrix solve for a cable of sections.
 
     Parameters
     ----------
@@ -33,7 +36,16 @@ def axial_at(configuration: Configuration, omega: float, sigma: float) -> AxialR
     H writes the velocity as D_1/3 omega_0; with the height in place of the amplitude its Table III does not come out,
     with half of it, it does.
     """
-    velocity = 0.5 * float(significant(sigma)) * omega
+    amplitude = 0.5 * float(significant(sigma))
+    if configuration.tow.sections:
+        found = frequency_response(configuration.tow, [omega], amplitude=amplitude)
+        return AxialResponse(
+            omega=found.omega,
+            bottom=found.axial[:, 0] / found.top,
+            tension_bottom=found.tension_bottom / found.top,
+            tension_top=found.tension_top / found.top,
+        )
+    velocity = amplitude * omega
     return axial_response(AxialString.from_tow(configuration.tow, velocity), omega)
 
 

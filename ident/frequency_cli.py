@@ -67,7 +67,7 @@ def response(
     quiet: Quiet = False,
 ) -> None:
     """Respond to sinusoidal motion of the cable's top."""
-    options.within("--amplitude", amplitude, positive("a", "m"))
+    options.within("--amplitude", amplitude, Quantity("a", "m", 0.0, 1000.0, open_lower=True))
     options.within("--from", low, positive("omega", "rad/s"))
     options.within("--to", high, positive("omega", "rad/s"))
     options.within("--depth", depth, positive("z", "m"))
@@ -118,7 +118,7 @@ def sea(
     quiet: Quiet = False,
 ) -> None:
     """Respond to a random sea: motions, tensions, slack."""
-    options.within("--hs", hs, positive("H_s", "m"))
+    options.within("--hs", hs, Quantity("H_s", "m", 0.0, 50.0, open_lower=True))
     options.within("--tp", tp, positive("T_p", "s"))
     options.within("--duration", duration, positive("T", "s"))
     configuration = options.load(name)

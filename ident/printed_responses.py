@@ -157,7 +157,7 @@ def _of_modes(found: Rows, runs: Sequence[str]) -> str:
     words = (
         f"With the damping that this motion and the current make, {seen} of the {in_words(len(modes))} modes stands "
         f"out as a peak by {MODE:g} dB; in the almost undamped cable {in_words(len(still))} do, within "
-        f"{100.0 * apart:.0f} % of the printed frequencies. The printed peaks fit a cable damped far less than the "
+        f"{100.0 * apart:.1f} % of the printed frequencies. The printed peaks fit a cable damped far less than the "
         "linearised drag of one metre and of the current makes it: compare their frequencies, not levels."
     )
     if NO_CURRENT in runs:

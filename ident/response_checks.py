@@ -16,6 +16,7 @@ from models.current import Current
 from models.quantity import InvalidInput, NumericalFailure
 from models.tow import Tow
 from models.transfer_matrix import Response, UniformDamping, frequency_response, product_digits
+from models.vehicle import Towfish
 
 Floats = NDArray[np.float64]
 
@@ -46,17 +47,21 @@ def other_area(tow: Tow) -> tuple[Tow, TangentialArea]:
 def almost_undamped(tow: Tow, omega: Floats, *, at: float, **settings: Any) -> Response:
     """The response with the damping of a centimetre of motion at the frequency `at`, without the current's share.
 
-    The static shape stays that of the current.
+    The static shape stays that of the current; all sections have the damping of the upper cable.
     """
     speed = SMALL * at
     share, rho, body = 8.0 / (3.0 * math.pi) * speed, tow.water_density, tow.vehicle
-    drag = body.drag(rho)
+    drag, turning = body.drag(rho), 0.0
+    if isinstance(body, Towfish):
+        # Turning as fast as a centimetre of motion at its ends, H (17).
+        turning = 0.5 * rho * body.drag_coefficient * max(body.area_p, body.area_q) * body.length**3 / 32.0
+        turning *= share / (0.5 * body.length)
     damping = UniformDamping(
         axial=share * tow.cable.tangential_drag(rho),
         normal=share * tow.cable.normal_drag(rho),
         surge=share * drag,
         heave=share * drag,
-        pitch=share * drag,
+        pitch=turning,
     )
     return frequency_response(tow, omega, **{**settings, "drag": "printed", "damping": damping})
 

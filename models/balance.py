@@ -75,6 +75,11 @@ def _pitch_equilibrium(body: Towfish, density: float, flow: float) -> float:
     grid = np.concatenate([grid[:1] - _BEYOND, grid, grid[-1:] + _BEYOND])
     moment = _loads(body, density, flow, np.sin(grid), np.cos(grid))[2]
     falls = np.flatnonzero((moment[:-1] > 0.0) & (moment[1:] <= 0.0))
+    if falls.size == 0 and body.buoyancy > body.weight:
+        raise InvalidInput(
+            f"The towfish floats up: its buoyancy of {body.buoyancy:g} N is more than its weight of {body.weight:g} N, "
+            "so that the cable cannot hold it level below the ship. Give it less buoyancy."
+        )
     if falls.size == 0:
         raise InvalidInput(
             f"The towfish has no stable pitch angle between -90 and 90 degrees in a flow of {flow + 0.0:g} m/s; the "

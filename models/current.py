@@ -73,9 +73,9 @@ class Current:
 
     @property
     def planar(self) -> bool:
-        """Whether the water moves along X alone, to rounding."""
+        """Whether the water moves along X alone, to what a user writes of pi."""
         across = np.abs(self.velocity[:, 1])
-        return bool((across <= 1e-9 * np.abs(self.speed)).all())
+        return bool((across <= 1e-6 * np.abs(self.speed)).all())
 
     def velocity_at(self, depth: ArrayLike) -> Floats:
         """Components [m/s] along +X and +Y at the given depths [m, positive down], on a last axis of 2."""

@@ -40,7 +40,7 @@ _SHOWN = (
     "T_n_thousandth_N",
 )
 #: Sections that the study reads; what else the file gives is listed as unused.
-_USED = ("", "water", "cable", "vehicle", "towfish", "tow", "current", "compensator")
+_USED = ("", "water", "cable", "section", "vehicle", "towfish", "tow", "current", "compensator")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -176,7 +176,8 @@ def compensator(
             simulated.write_files(folder, check)
         write_json(folder / "manifest.json", made)
         progress("done", 1.0)
-    return CompensatorResult(folder=out, table=_terminal(table), notes=_notes(tuned, details, stroke, rao))
+    described = any(key.startswith("compensator.") for key in configuration.given)
+    return CompensatorResult(folder=out, table=_terminal(table), notes=_notes(tuned, details, stroke, rao, described))
 
 
 def _resolved(sea: seas.Seaway, tuned: Tuning) -> seas.Seaway:
@@ -293,7 +294,7 @@ def _left_out(configuration: Configuration) -> list[tuple[str, str]]:
     return missing
 
 
-def _notes(tuned: Tuning, details: pd.DataFrame, stroke: float, rao: Path | None) -> tuple[str, ...]:
+def _notes(tuned: Tuning, details: pd.DataFrame, stroke: float, rao: Path | None, described: bool) -> tuple[str, ...]:
     """What to do, how far the rule holds in the random sea, and what was assumed."""
     words = {"soft": "leave the compensator soft", "damp": "raise the damping", "lock": "lock the compensator"}
     notes = [f"{words[tuned.advice]}: {tuned.why}"]
@@ -309,6 +310,14 @@ def _notes(tuned: Tuning, details: pd.DataFrame, stroke: float, rao: Path | None
         notes.append(
             f"in the random sea the softest compensator lets one motion in a thousand exceed {reached:.2f} m, more "
             f"than the stroke of {stroke:g} m"
+        )
+    stiff = details[details["strategy"] == "tuned-stiffness"]
+    over = float(stiff["R_thousandth_m"].iloc[0]) if len(stiff) else 0.0
+    if over > stroke:
+        notes.append(f"the tuned stiffness lets one motion in a thousand exceed {over:.2f} m of {stroke:g} m")
+    if not described:
+        notes.append(
+            "the configuration has no [compensator]: its mass and the least stiffness and damping are defaults of ours"
         )
     if tuned.strict:
         notes.append(

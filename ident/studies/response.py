@@ -41,7 +41,7 @@ from ident.terminal import Progress
 from models.quantity import InvalidInput
 from models.statics import StaticShape, length_for_depth
 from models.tow import Tow
-from models.transfer_matrix import Direction, DragForm, Response, Solver, frequency_response
+from models.transfer_matrix import COARSE, Direction, DragForm, Response, Solver, frequency_response
 from reports.figures.cable_motion import CableMotion
 from reports.files import write_json, write_table
 from reports.response_material import ResponseMaterial
@@ -278,6 +278,14 @@ def _notes(own: Response) -> tuple[str, ...]:
         notes.append(
             f"The damping did not settle at {missed.size} of {own.omega.size} frequencies, the first at "
             f"{missed[0]:.3g} rad/s; see `change` in response-details.csv."
+        )
+    coarse = {name: share for name, share in own.shares.items() if share > COARSE}
+    if coarse:
+        worst = max(coarse, key=lambda name: coarse[name])
+        notes.append(
+            f"The mesh of {own.shape.s.size - 1} segments is too coarse: with half as many the "
+            f"{worst.replace('_', ' ')} differs by {300.0 * coarse[worst]:.2g} % of its largest amplitude. Leave out "
+            "--segments, or give more."
         )
     loose = own.omega[slack_ratio(own).max(axis=1) >= 1.0]
     if loose.size:

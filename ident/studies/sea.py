@@ -24,7 +24,7 @@ from ident.sea_tables import (
     spectra_table,
 )
 from ident.terminal import Progress
-from models.transfer_matrix import Direction, DragForm, SeaResponse, sea_response
+from models.transfer_matrix import COARSE, Direction, DragForm, SeaResponse, sea_response
 from models.vehicle import Towfish
 from reports.files import write_json, write_table
 from reports.sea_page import SeaMaterial, write_sea_page
@@ -239,6 +239,13 @@ def _notes(made: ChosenSea, response: SeaResponse, table: pd.DataFrame, along: p
     if not response.converged:
         notes.append(
             f"The damping did not settle in {response.iterations} iterations; the last change is {response.change:.2g}."
+        )
+    coarse = {name: share for name, share in response.shares.items() if share > COARSE}
+    if coarse:
+        name = max(coarse, key=lambda each: coarse[each])
+        notes.append(
+            f"The mesh of {response.sigma_tension.size - 1} segments is too coarse: with half as many sigma of the "
+            f"{name.replace('_', ' ')} differs by {300.0 * coarse[name]:.2g} %. Leave out --segments, or give more."
         )
     worst = along.iloc[int(along["slack_probability"].to_numpy().argmax())]
     if worst["slack_probability"] >= _SLACK:

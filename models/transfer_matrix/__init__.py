@@ -2,9 +2,10 @@
 
 from models.transfer_matrix.response import Response, Solver, frequency_response, product_digits
 from models.transfer_matrix.sea import SEA_QUANTITIES, SeaResponse, sea_response
-from models.transfer_matrix.setup import Compensator, Direction, DragForm, UniformDamping
+from models.transfer_matrix.setup import COARSE, Compensator, Direction, DragForm, UniformDamping
 
 __all__ = [
+    "COARSE",
     "SEA_QUANTITIES",
     "Compensator",
     "Direction",

@@ -13,7 +13,8 @@ and J_ij the derivatives of the force, its first harmonic is exactly
 
     F_i = sum_j D_ij V_j,   D_ij = <J_ij> - <J_ij e^{-2 i theta}> conj(V_j)/V_j,
 
-for a towfish in closed form from the harmonics of sgn(y), for a point body by a sum over phases.
+for a towfish in closed form from the harmonics of sgn(y), for a point body by a sum over phases, which errs by up to
+2 % of the smaller force where the body moves mostly along one axis.
 """
 
 import math
@@ -34,8 +35,8 @@ from models.transfer_matrix.columns import (
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
 
-#: Phases at which the drag of a point body is taken.
-_PHASES = 64
+#: Phases at which the drag of a point body is taken, and the share of its velocity below which a component is aside.
+_PHASES, _ASIDE = 256, 1e-3
 
 
 @kernel
@@ -114,8 +115,18 @@ def body_harmonic(body: Floats, u: complex, v: complex, D: Complexes) -> None:
         D[1, 1] += k_p * _balanced(c, u, u_0, b)
         D[1, 0] = k_p * _balanced(c, v, v_0, a)
         return
+    # A point: k |V| V. One that moves along one axis alone is in closed form: |x| x there, |x| y across.
+    along_x, along_y = abs(u) + abs(u_0), abs(v) + abs(v_0)
+    c = np.empty(4, dtype=np.complex128)
+    if along_y <= _ASIDE * along_x:
+        _signs(u, u_0, c)
+        D[1, 1], D[1, 0] = k_p * _balanced(c, u, u_0, b), k_p * _balanced(c, v, v_0, a)
+        return
+    if along_x <= _ASIDE * along_y:
+        _signs(v, v_0, c)
+        D[0, 0], D[0, 1] = k_p * _balanced(c, v, v_0, a), k_p * _balanced(c, u, u_0, b)
+        return
     for i in range(_PHASES):
-        # A point: k |V| V beyond the parts k |x| x and k |y| y, which are above in closed form.
         turn = np.exp(1j * (2.0 * math.pi * (i + 0.5) / _PHASES))
         x, y = u_0 + (u * turn).real, v_0 + (v * turn).real
         speed = math.hypot(x, y)

@@ -12,7 +12,6 @@ from models.statics import StaticShape, steady_way
 from models.tow import Tow
 from models.transfer_matrix import columns as c
 from models.transfer_matrix.line import Line
-from models.transfer_matrix.mesh import joints_of
 from models.transfer_matrix.setup import (
     Compensator,
     Complexes,
@@ -27,6 +26,7 @@ from models.transfer_matrix.setup import (
     failed_at,
     line_of,
     nodes_of,
+    on_nodes,
     resolve,
     shares_of,
 )
@@ -214,10 +214,7 @@ def frequency_response(
         return _run(line, frequencies, amplitude, direction, solver, tolerance, damping, compensator)
 
     if nodes is not None:
-        mesh = checked_nodes(tow, nodes)
-        fine = run(mesh)
-        even = all(np.isclose(mesh[::2], joint, rtol=0.0, atol=1e-9 * tow.length).any() for joint in joints_of(tow))
-        return _with_error(fine, run(mesh[::2])) if companion and even and mesh.size > 4 else fine
+        return on_nodes(run, tow, checked_nodes(tow, nodes), companion, _with_error)
     if segments is not None and not companion:
         return run(nodes_of(tow, segments, frequencies, amplitude, way=way))
     return resolve(run, tow, segments, lambda count: nodes_of(tow, count, frequencies, amplitude, way=way), _with_error)

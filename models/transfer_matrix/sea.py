@@ -36,6 +36,7 @@ from models.transfer_matrix.setup import (
     failed_at,
     line_of,
     nodes_of,
+    on_nodes,
     resolve,
     scales_of,
     shares_of,
@@ -157,8 +158,7 @@ def sea_response(
         return _run(line, frequencies, spectrum, weights, tops, direction, tolerance, compensator)
 
     if nodes is not None:
-        mesh = checked_nodes(tow, nodes)
-        return run(mesh)
+        return on_nodes(run, tow, checked_nodes(tow, nodes), companion, _with_error)
     if segments is not None and not companion:
         return run(nodes_of(tow, segments, frequencies, amplitude, way=way))
     return resolve(run, tow, segments, lambda count: nodes_of(tow, count, frequencies, amplitude, way=way), _with_error)

@@ -27,6 +27,8 @@ DragForm = Literal["consistent", "printed"]
 #: Segments that the search for a resolution begins and ends with, and the share of the largest amplitude that the
 #: error of a result may have.
 FIRST_SEGMENTS, LAST_SEGMENTS, SHARE = 64, 16384, 1e-3
+#: The share from which a mesh that was asked for is called too coarse.
+COARSE = 0.01
 
 _TENSIONS = ("tension_bottom", "tension_top")
 
@@ -194,6 +196,17 @@ def failed_at(line: Line, omega: float) -> NumericalFailure:
         f"one of the cable's own ({line.h.size} segments, least tension {line.shape.T.min():.4g} N). Give some drag or "
         "change the frequency."
     )
+
+
+def on_nodes(
+    run: Callable[[Floats], R], tow: Tow, nodes: Floats, companion: bool, with_error: Callable[[R, R], R]
+) -> R:
+    """The result on given nodes, with its error where every second of them is a mesh too."""
+    joints = joints_of(tow)
+    even = nodes.size > 4 and all(
+        np.isclose(nodes[::2], joint, rtol=0.0, atol=1e-9 * tow.length).any() for joint in joints
+    )
+    return with_error(run(nodes), run(nodes[::2])) if companion and even else run(nodes)
 
 
 def resolve(

@@ -14,6 +14,7 @@ from ident.printed_compensators import STRATEGIES, TABLE_THREE, table_four
 from ident.studies import compensator as study
 from models.compensator import Setting
 from models.quantity import InvalidInput
+from models.transfer_matrix import frequency_response
 
 FILES = {
     "report.md",
@@ -204,9 +205,20 @@ def test_bad_input_leaves_no_folder(swath: Configuration, tmp_path: Path) -> Non
     ):
         with pytest.raises(InvalidInput, match=words):
             run(swath, tmp_path / "out", **given)
-    with pytest.raises(InvalidInput, match="one uniform cable"):
-        run(load("s-shape-205"), tmp_path / "out")
     assert not (tmp_path / "out").exists()
+
+
+def test_a_cable_of_sections_is_tuned_by_the_matrix_solve(tmp_path: Path) -> None:
+    """The dynamic stiffness at the peak is that of the S-shape; a default compensator is told to be one."""
+    result = run(load("s-shape-205"), tmp_path / "out")
+    details = pd.read_csv(tmp_path / "out" / "tuning-details.csv").set_index("strategy")
+    tow, omega = load("s-shape-205").tow, float(details["omega_rad_s"].iloc[0])
+    found = frequency_response(tow, [omega], amplitude=0.5 * float(details["D_third_m"].iloc[0]))
+    c = complex(found.tension_top[0] / found.top[0])
+    assert pd.read_csv(tmp_path / "out" / "tuning.csv")["k_crit_N_m"].iloc[0] == pytest.approx(
+        abs(c) ** 2 / (-2.0 * c.real), rel=1e-3
+    )
+    assert any("no [compensator]" in note for note in result.notes)
 
 
 def test_the_search_for_the_filled_stroke_knows_when_there_is_none(swath: Configuration) -> None:

@@ -106,3 +106,8 @@ def test_files_that_hold_no_rao(text: str, message: str, tmp_path: Path) -> None
     with pytest.raises(InvalidInput, match=message) as caught:
         read_rao(path)
     assert str(caught.value).startswith(str(path))
+
+
+def test_phases_in_degrees_are_refused() -> None:
+    with pytest.raises(InvalidInput, match=r"phases in radians, .* heave_phase\[1\] is -170"):
+        Rao(omega=[0.5, 1.0], heave=[1.0, 0.5], heave_phase=[0.0, -170.0])
