@@ -265,39 +265,32 @@ def test_a_section_cut_in_two_is_the_same_cable(table_two: Tow) -> None:
     assert np.abs(whole.states - parted.states).max() < 1e-9 * np.abs(whole.states).max()
 
 
+#: A light inextensible cable, for pendulums.
+THREAD = Cable(
+    length=10.0,
+    diameter=1e-4,
+    mass=1e-6,
+    weight_in_water=1e-6,
+    added_mass=0.0,
+    axial_stiffness=1e12,
+    normal_drag_coefficient=0.0,
+    tangential_drag_coefficient=0.0,
+)
+
+
 def test_the_swinging_of_a_weight_on_a_light_cable() -> None:
     """A pendulum: a light inextensible cable with a point body, moved to and fro at its top."""
-    cable = Cable(
-        length=10.0,
-        diameter=1e-4,
-        mass=1e-6,
-        weight_in_water=1e-6,
-        added_mass=0.0,
-        axial_stiffness=1e12,
-        normal_drag_coefficient=0.0,
-        tangential_drag_coefficient=0.0,
-    )
     body = Vehicle(weight_in_water=500.0, mass=60.0, added_mass=30.0, area=0.5, drag_coefficient=0.0)
     omega = np.array([0.2, 0.6, 0.9, 2.0])
-    answer = frequency_response(Tow(cable=cable, vehicle=body), omega, direction="surge", segments=4, companion=False)
+    answer = frequency_response(Tow(cable=THREAD, vehicle=body), omega, direction="surge", segments=4, companion=False)
     own = 500.0 / (90.0 * 10.0)
     assert answer.horizontal.real == pytest.approx(own / (own - omega**2), rel=1e-5)
 
 
 def test_quadratic_drag_of_a_swinging_weight() -> None:
     """The same with drag: the amplitude solves the cubic of harmonic balance."""
-    cable = Cable(
-        length=10.0,
-        diameter=1e-4,
-        mass=1e-6,
-        weight_in_water=1e-6,
-        added_mass=0.0,
-        axial_stiffness=1e12,
-        normal_drag_coefficient=0.0,
-        tangential_drag_coefficient=0.0,
-    )
     body = Vehicle(weight_in_water=500.0, mass=60.0, added_mass=30.0, area=0.5, drag_coefficient=1.0)
-    tow, omega = Tow(cable=cable, vehicle=body), math.sqrt(500.0 / 900.0)
+    tow, omega = Tow(cable=THREAD, vehicle=body), math.sqrt(500.0 / 900.0)
     answer = frequency_response(tow, [omega], amplitude=0.1, direction="surge", segments=4, companion=False)
     X = abs(answer.horizontal[0])
     drag = body.drag(tow.water_density) * harmonic(omega * X, 0.0)
