@@ -87,7 +87,6 @@ def _interruptible() -> Iterator[None]:
     numbers = [getattr(signal, name) for name in names]
     usual = (signal.SIG_DFL, signal.default_int_handler)
     before = {number: signal.getsignal(number) for number in numbers if signal.getsignal(number) in usual}
-    interruption.clear()
     try:
         for number in before:
             signal.signal(number, _interrupt)
@@ -95,6 +94,7 @@ def _interruptible() -> Iterator[None]:
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
+        interruption.clear()
 
 
 def _interrupt(number: int, frame: object) -> NoReturn:

@@ -18,6 +18,7 @@ from ident.builtin import builtin_names, builtin_text
 from ident.cli import main
 from ident.configuration import load
 from ident.exits import exit_code
+from ident.places import interruption
 from ident.terminal import progress, write_error, write_table
 from models.quantity import InvalidInput, NumericalFailure
 
@@ -284,6 +285,7 @@ def test_a_request_to_end_counts_as_an_interrupt(name: str, capsys: Capture) -> 
 
     assert exit_code(work) == 130
     assert signal.getsignal(number) is before
+    assert not interruption.is_set()
     assert capsys.readouterr().err == "error: interrupted.\n"
 
 
