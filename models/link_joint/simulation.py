@@ -32,7 +32,8 @@ FASTEST, SHARPEST = 30.0, 20.0
 _STALLS = 0.7
 #: Cable that moves by this under its own weight turns over too little energy to be judged by its account [m].
 _JUDGED = 0.02
-STEP_BUDGET = 5_000_000
+#: Most steps of a run, and most links times steps: some five minutes.
+STEP_BUDGET, LINK_BUDGET = 5_000_000, 400_000_000
 #: Links times steps after which the march comes back to Python, where it can be interrupted; and least steps.
 AT_A_TIME, LEAST_STEPS = 2_000_000, 100
 MOST_EVENTS = 2000
@@ -253,7 +254,7 @@ def _run(
         tolerance=tolerance,
         step=0.0 if step is None else step,
         first=min(0.05, span),
-        budget=STEP_BUDGET,
+        budget=_budget(n),
         at_a_time=max(LEAST_STEPS, AT_A_TIME // n),
         nominal=nominal,
     )
@@ -301,6 +302,11 @@ def _usual_velocity(system: TowedSystem, ship: Trace) -> tuple[float, float, flo
     return float(x), float(y), 0.0
 
 
+def _budget(links: int) -> int:
+    """Most steps of a chain of so many links."""
+    return max(LEAST_STEPS, min(STEP_BUDGET, LINK_BUDGET // links))
+
+
 def _judge(out: kernel.Outcome, imbalance: float, layout: Layout, system: TowedSystem) -> None:
     """Raise for a march that failed, or whose energy account does not close."""
     if out.code == kernel.DONE:
@@ -316,7 +322,8 @@ def _judge(out: kernel.Outcome, imbalance: float, layout: Layout, system: TowedS
     reasons = {
         kernel.STUCK: f"a step is not solved {where}: closure error or change {out.quantity:.3g}; use a smaller step",
         kernel.NOT_FINITE: f"velocities leave the finite range {where}: {out.quantity:.3g} m/s; use a smaller step",
-        kernel.BUDGET_SPENT: f"{STEP_BUDGET} steps are spent at t = {out.t:.6g} s, the last of {out.quantity:.3g} s",
+        kernel.BUDGET_SPENT: f"{_budget(layout.chain.part.size)} steps are spent at t = {out.t:.6g} s, the last of "
+        f"{out.quantity:.3g} s",
         kernel.EVENTS_FULL: f"more than {MOST_EVENTS} slack events by t = {out.t:.6g} s",
     }
     raise NumericalFailure(f"The link-joint chain failed: {reasons[out.code]}.")

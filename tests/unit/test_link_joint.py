@@ -238,6 +238,13 @@ def test_shapes_are_kept_on_request(system: TowedSystem) -> None:
     np.testing.assert_allclose(run.shapes[1][-1], [30.0, 0.0, 0.0], atol=1e-9)
 
 
+def test_a_run_ends_when_its_links_have_taken_their_steps(system: TowedSystem, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The budget is of links times steps, so that many links do not take hours; the message has the steps."""
+    monkeypatch.setattr(simulation, "LINK_BUDGET", 24 * 150)
+    with pytest.raises(NumericalFailure, match=r"150 steps are spent at t = "):
+        link_joint.simulate(system, straight(1.0, 300.0), links=24, step=0.1, companion=False)
+
+
 def test_a_long_march_comes_back_to_python_and_goes_on(system: TowedSystem, monkeypatch: pytest.MonkeyPatch) -> None:
     t = np.arange(0.0, 600.0)
     ship = Trace.along_x(t, 3.0 * (1.0 - np.cos(0.3 * t)))
