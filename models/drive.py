@@ -8,7 +8,7 @@
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal, NamedTuple, Self
 
@@ -25,7 +25,7 @@ Start = Literal["rest", "steady"]
 #: Abscissa and diagonal entry of the two-stage, stiffly accurate SDIRK of order 2 (Alexander 1977).
 GAMMA = 1.0 - 1.0 / math.sqrt(2.0)
 
-#: Longest step of a massless quadratic model [s]: 1e-4 m/s RMS on an hour below one knot, with a margin of two.
+#: Longest step of a quadratic model [s]: 1e-4 m/s RMS on an hour below one knot, with a margin of two.
 MAX_STEP = 0.5
 
 #: Length of the stretch whose mean ship velocity is the speed of a steady start [s].
@@ -81,7 +81,7 @@ class Drive:
             ``rest``: everything lies at rest at the ship's first position; ``steady``: the model tows in its own
             steady shape at the ship's mean velocity over the first minute.
         max_step
-            Longest step of a massless quadratic model [s]; models with mass take half of it.
+            Longest step of a quadratic model [s]; the implicit stepper takes half of it where there is mass.
 
         Raises
         ------
@@ -122,6 +122,10 @@ class Drive:
         quantum = 4.0 * np.finfo(float).eps * float(np.abs(self.t).max())
         _, which, count = np.unique(np.round(interval / quantum), return_inverse=True, return_counts=True)
         return np.bincount(which, interval) / count, which.astype(np.int64)
+
+    def finer(self, parts: int) -> Self:
+        """The same drive with each of the longest steps in so many parts."""
+        return replace(self, max_step=min(self.max_step, float(np.diff(self.t).max())) / parts)
 
     def _grid(self, max_step: float) -> Grid:
         interval = np.diff(self.t)

@@ -1,10 +1,11 @@
-"""The quadratic stepper is of order 2, the linear propagator exact."""
+"""The implicit stepper of the quadratic models is of order 2, the linear propagator exact."""
 
 import numpy as np
 import pytest
 
 from ident.configuration import load
 from models import reduced
+from models.chain import quadratic_motion
 from models.drive import Drive
 from models.statics import static_shape
 from models.trace import Trace
@@ -22,12 +23,12 @@ def smooth_ship(step: float) -> Trace:
 @pytest.mark.parametrize(
     "name", ["massless-4-quadratic", "inertial-4-quadratic", "second-order-quadratic", "first-order-quadratic"]
 )
-def test_quadratic_stepper_is_second_order(name: str) -> None:
-    model = reduced.section(name, TOW, SHAPE)
+def test_the_implicit_stepper_is_second_order(name: str) -> None:
+    chain = reduced.section(name, TOW, SHAPE).chain()
     ship = smooth_ship(4.0)
 
     def run(step: float) -> np.ndarray:
-        return reduced.respond(model, Drive.from_trace(ship, start="steady", max_step=step)).velocity[20:]
+        return quadratic_motion(chain, Drive.from_trace(ship, start="steady", max_step=step), path="implicit").v[20:]
 
     exact = run(1 / 64)
     errors = [float(np.sqrt(np.mean((run(step) - exact) ** 2))) for step in (4.0, 2.0, 1.0, 0.5)]

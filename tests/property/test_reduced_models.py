@@ -172,7 +172,7 @@ def test_massless_is_the_limit_of_small_masses(seed: int, drag: Drag) -> None:
     ship = some_ship(seed)
     k, r = rng.uniform(20.0, 90.0, 4), rng.uniform(500.0, 5000.0, 4)
     motion = quadratic_motion if drag == "quadratic" else linear_motion
-    # The same steps for both: a chain with mass takes half of max_step.
+    # The same steps for both: a chain with mass takes half of max_step where it is marched implicitly.
     limit = motion(Chain(k, r, np.zeros(4)), Drive.from_trace(ship, max_step=0.5)).v
 
     def gap(mass: float) -> float:

@@ -1,5 +1,7 @@
 """Names, parameters, bounds, messages and the first guess of the reduced models."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -317,3 +319,19 @@ def test_simulate_returns_the_response_as_a_trace() -> None:
     np.testing.assert_array_equal(trace.position[:, 0], response.position)
     np.testing.assert_array_equal(trace.rates()[:, 0], response.velocity)
     assert not trace.position[:, 1:].any()
+
+
+@pytest.mark.parametrize("name", ["massless-4-quadratic", "inertial-16-quadratic", "second-order-quadratic"])
+def test_the_estimate_of_the_steps_is_near_their_error(name: str) -> None:
+    """Against a thirty-second of the steps: the estimate is neither blind nor much too large."""
+    model = guess(name)
+    t = np.arange(0.0, 601.0)
+    drive = Drive.from_trace(Trace.along_x(t, 8.0 * (1.0 - np.cos(0.05 * t))))
+    exact = reduced.respond(model, replace(drive, max_step=1.0 / 32.0)).velocity
+    error = float(np.sqrt(np.mean((reduced.respond(model, drive).velocity - exact) ** 2)))
+    assert 0.9 * error < reduced.step_error(model, drive) < 1.4 * error
+
+
+def test_a_linear_model_has_no_error_of_steps() -> None:
+    drive = Drive.from_trace(Trace.along_x(np.arange(0.0, 101.0), np.sin(np.arange(0.0, 101.0) / 9.0)))
+    assert reduced.step_error(guess("inertial-4-linear"), drive) < 1e-13
