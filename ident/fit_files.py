@@ -154,6 +154,7 @@ def _as_mapping(fit: Fit) -> dict[str, object]:
         "intervals": {p.name: {"low": p.low, "high": p.high, "determined": p.verdict} for p in intervals},
         "records": list(fit.records),
         "rms_velocity_m_s": fit.rms if math.isfinite(fit.rms) else None,
+        "step_error_m_s": fit.step_error if math.isfinite(fit.step_error) else None,
         "identification_s": fit.seconds,
         "simulations": fit.simulations,
         "outcome": fit.outcome,

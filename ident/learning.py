@@ -1,7 +1,8 @@
 """The learning model, T chapter 5: parameters moved until the open-loop response matches the record.
 
 The cost is the RMS velocity error over all scored samples of all records; the search is SciPy's Nelder-Mead on
-log-parameters, restarted from its best point (`ident.simplex`). Position is never fitted.
+log-parameters, restarted from its best point (`ident.simplex`), after a look around the guess (`ident.scouting`).
+Position is never fitted.
 """
 
 import math
@@ -17,6 +18,7 @@ from ident.identifiability import Identifiability, examine
 from ident.search_space import SearchSpace
 from ident.simplex import EXACT, GAIN, RESTARTS
 from ident.starts import StartResult, nearest_of_equals, search_all
+from models import reduced
 from models.quantity import InvalidInput, NumericalFailure
 from models.reduced import ReducedModel
 
@@ -53,6 +55,9 @@ class Fit:
         All starts, the best first.
     identifiability
         ``None`` where the fit failed.
+    step_error
+        RMS velocity error [m/s] that the fitted model's steps leave on the worst record, estimated by finer ones;
+        NaN where the fit failed.
     """
 
     model: ReducedModel
@@ -71,6 +76,7 @@ class Fit:
     gains: tuple[float, ...]
     waterfall: tuple[StartResult, ...]
     identifiability: Identifiability | None
+    step_error: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -105,9 +111,9 @@ def fit(
     fixed
         Names of parameters that keep their values.
     budget
-        Simulations for each start point, its restarts included.
+        Simulations for each start point, its restarts and the look around the first guess (`ident.scouting`) included.
     starts
-        Start points: the model itself, and others scattered about it.
+        Start points: the model itself, and others scattered about it; some models have more (`ident.starts`).
     seed
         Of the further start points and of the search for twins.
     profile
@@ -160,6 +166,7 @@ def fit(
         gains=best.gains,
         waterfall=tuple(results),
         identifiability=examined,
+        step_error=math.nan if examined is None else max(reduced.step_error(fitted, case.drive) for case in cases),
     )
 
 

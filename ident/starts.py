@@ -1,7 +1,10 @@
-"""The search from several start points: those asked for, and those that a linear chain needs.
+"""The search from several start points: those asked for, and those that a linear chain or a far guess needs.
 
-The cost of a linear chain has a valley where the cable carries the drag and another where the vehicle does,
-and near twins within them: the search starts in each.
+The search from the first guess looks around it before (`ident.scouting`). The cost of a chain has a valley where the
+cable carries the drag and another where the vehicle does, and near twins within them if its drag is linear: a linear
+chain starts in each, a quadratic one only where the guess was found to be far off, as its own valley is the near one.
+A second order whose guess was far off starts from moderate damping ratios too: far above one, the mass no longer
+matters and the cost is flat along spring and damping.
 """
 
 import math
@@ -11,12 +14,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from ident.cases import Case, Floats
-from ident.objective import BudgetSpent, Objective
+from ident.objective import BudgetSpent, Objective, rms
+from ident.scouting import scout
 from ident.search_space import SearchSpace
 from ident.simplex import EXACT, search
 from ident.total_drag import cable_share, total_of
 from ident.twins import alternatives
 from models import reduced
+from models.delayed import SecondOrder
+from models.equivalent_drag import at_speed
 from models.inertial import Inertial
 from models.massless import Massless
 from models.quantity import NumericalFailure
@@ -30,6 +36,12 @@ HOPS, HOP_COST = 2, 3.0
 #: The smaller part of the total drag in a one-sided split.
 SMALL_SHARE = 0.1
 
+#: Damping ratios from which a second order starts again where its guess was far off.
+RATIOS = (1.0, 4.0)
+
+#: Least velocity amplitude of an equivalent drag [m/s]: the vehicle of a record may lie still.
+SLOWEST = 1e-3
+
 #: Results whose costs differ by less than this, relative, are equally good.
 EQUAL = 1e-7
 
@@ -41,9 +53,10 @@ class StartResult:
     Parameters
     ----------
     number
-        0 for the given guess, then the scattered start points, then those of a linear chain.
-    start, values
-        The searched parameters at the start and at the end.
+        0 for the given guess, then the scattered start points, then those of a linear chain or a far guess.
+    start, begun, values
+        The searched parameters at the start, where the first simplex was spread, which is another place only where
+        the first guess was found to be far off, and at the end.
     rms
         At the end [m/s]; infinite where no simulation succeeded.
     gains, settled
@@ -54,6 +67,7 @@ class StartResult:
 
     number: int
     start: tuple[float, ...]
+    begun: tuple[float, ...]
     values: tuple[float, ...]
     rms: float
     gains: tuple[float, ...]
@@ -72,9 +86,10 @@ class StartResult:
 def search_all(
     space: SearchSpace, cases: Sequence[Case], *, budget: int, starts: int, seed: int
 ) -> tuple[list[StartResult], list[Floats]]:
-    """Search from the space's model, from `starts` - 1 points scattered about it, and for a linear chain from others.
+    """Search from the space's model, from `starts` - 1 points scattered about it, and from others where need be.
 
-    Those are the two one-sided splits of its drag, and near twins of the best result.
+    Those are the other valleys of a linear chain, or of a model whose guess was found to be far off, and near twins
+    of the best result of a linear chain.
 
     Returns
     -------
@@ -85,9 +100,12 @@ def search_all(
     """
     rng = np.random.default_rng(seed)
     guess = space.coordinates(space.model)
-    points = [guess, *(guess + rng.uniform(-SCATTER, SCATTER, guess.size) for _ in range(starts - 1))]
-    points += _other_splits(space, guess)
-    results = [_search(space, cases, point, budget, number) for number, point in enumerate(points)]
+    first = _search(space, cases, guess, budget, 0, look=True)
+    points = [guess + rng.uniform(-SCATTER, SCATTER, guess.size) for _ in range(starts - 1)]
+    begun = space.coordinates(reduced.with_values(space.model, space.all_values(first.begun)))
+    points += _other_valleys(space, begun, cases, far=first.begun != first.start)
+    results = [first]
+    results += [_search(space, cases, point, budget, number) for number, point in enumerate(points, start=1)]
     best = min(results, key=lambda result: result.rms)
     near: list[Floats] = []
     if math.isfinite(best.rms):
@@ -115,14 +133,19 @@ def nearest_of_equals(space: SearchSpace, results: Sequence[StartResult]) -> Sta
     return min(equals, key=lambda result: float(np.abs(result.coordinates(space) - guess).max()))
 
 
-def _search(space: SearchSpace, cases: Sequence[Case], u: Floats, budget: int, number: int) -> StartResult:
-    """The whole search from one start point; its troubles are in the result."""
+def _search(
+    space: SearchSpace, cases: Sequence[Case], u: Floats, budget: int, number: int, *, look: bool = False
+) -> StartResult:
+    """The whole search from one start point, with a look around it before; its troubles are in the result."""
     objective = Objective(space, cases, budget)
-    start = np.clip(u, space.lower, space.upper)
+    start = begun = np.clip(u, space.lower, space.upper)
     gains: list[float] = []
     settled = spent = False
     try:
-        settled = search(objective, start, gains)
+        if look:
+            objective.residuals(start)
+            begun = scout(objective, start)
+        settled = search(objective, begun, gains)
     except BudgetSpent:
         spent = True
     except NumericalFailure:
@@ -131,6 +154,7 @@ def _search(space: SearchSpace, cases: Sequence[Case], u: Floats, budget: int, n
     return StartResult(
         number=number,
         start=tuple(float(value) for value in space.values_at(start)),
+        begun=tuple(float(value) for value in space.values_at(begun)),
         values=tuple(float(value) for value in space.values_at(at)),
         rms=objective.best,
         gains=tuple(gains),
@@ -143,21 +167,37 @@ def _search(space: SearchSpace, cases: Sequence[Case], u: Floats, budget: int, n
     )
 
 
-def _other_splits(space: SearchSpace, guess: Floats) -> list[Floats]:
-    """The guess with nearly all of its total drag on the vehicle, and on the cable; none unless a linear chain."""
-    model = space.model
+def _other_valleys(space: SearchSpace, place: Floats, cases: Sequence[Case], *, far: bool) -> list[Floats]:
+    """Other start points of a linear chain, or about the place that was found where the guess was `far` off.
+
+    A chain has nearly all of its total drag on the vehicle, and on the cable; a second order its damping ratio at
+    each of `RATIOS`, with the same ratio of spring and damping. There are none for other models.
+    """
+    model = space.model_at(place)
+    if far and isinstance(model, SecondOrder) and {"spring", "damping"} <= set(space.names):
+        both = np.array([name in ("spring", "damping") for name in space.names], dtype=float)
+        ratio = _damping_ratio(model, rms(np.concatenate([case.velocity for case in cases])))
+        return [place + 2.0 * math.log(wanted / ratio) * both for wanted in RATIOS]
     total = total_of(model)
-    if not isinstance(model, Massless | Inertial) or model.drag != "linear" or total is None:
+    if not isinstance(model, Massless | Inertial) or total is None or not (far or model.drag == "linear"):
         return []
     if not {"cable_drag", "vehicle_drag"} <= set(space.names):
         return []
     points = []
     for cable in (SMALL_SHARE, 1.0 - SMALL_SHARE):
-        point = guess.copy()
+        point = place.copy()
         point[space.names.index("cable_drag")] += math.log(cable * total / cable_share(model))
         point[space.names.index("vehicle_drag")] += math.log((1.0 - cable) * total / model.vehicle_drag)
         points.append(point)
     return points
+
+
+def _damping_ratio(model: SecondOrder, speed: float) -> float:
+    """b/(2 sqrt(a)), where the drag is quadratic of the equivalent linear drag at a velocity amplitude [m/s]."""
+    b = np.array([model.damping])
+    return float((b if model.drag == "linear" else at_speed(b, max(speed, SLOWEST)))[0]) / (
+        2.0 * math.sqrt(model.spring)
+    )
 
 
 def _confused(space: SearchSpace, cases: Sequence[Case], best: StartResult, near: Sequence[Floats]) -> Sequence[Floats]:
