@@ -6,11 +6,11 @@ harmonics by about pi/2; with fewer the projection aliases (T 2.6.2) and is refu
 """
 
 import math
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
 from models.quantity import InvalidInput
 from models.statics import StaticShape, flow_at, static_shape
@@ -50,7 +50,8 @@ END_CONDITIONS = ("weak", "pointwise")
     SHEAR_0,  # du/dz at the vehicle [1/s]
     MEAN_STRAIN,  # mean static strain
     AXIAL_LOSS,  # tau_a, time of the cable's internal loss [s]
-) = range(22)
+    AXIAL_MASS,  # m [kg/m]
+) = range(23)
 #: Names of the station rows in `Fields.station`.
 (
     X,  # s/L
@@ -71,8 +72,8 @@ END_CONDITIONS = ("weak", "pointwise")
 class Fields(NamedTuple):
     """What the kernels read, in few arrays: J stations, N harmonics, SI units.
 
-    `scalar` (22,) and `station` (12, J) are named above. `sines` (2, N, J) = sin(n pi x) and its derivative in s,
-    `sines_t` (2, J, N) the same by station; `moments` (2, J, 2N + 1) = cos, sin(k pi x); `axial` (2, K, J): the
+    `scalar` (23,) and `station` (12, J) are named above. `sines` (2, N, J) = sin(n pi x) and its derivative in s;
+    `moments` (2, 2N + 1, J) = cos, sin(k pi x); `axial` (2, K, J): the
     integral of g from the vehicle to station j is sum_k axial[1, k, j] c_k with c = axial[0] @ g, and c_0 is the
     integral over the whole cable. `body` are the parameters of `body_array`.
     """
@@ -80,7 +81,6 @@ class Fields(NamedTuple):
     scalar: Floats
     station: Floats
     sines: Floats
-    sines_t: Floats
     moments: Floats
     axial: Floats
     body: Floats
@@ -161,9 +161,9 @@ def prepare(
     shape = static_shape(tow) if shape is None else shape
     cable = tow.cable
     L = cable.length
-    node, weight = np.polynomial.legendre.leggauss(J)
+    node, weight = _gauss(J)
     x = 0.5 * (node + 1.0)
-    phi, T_s, e = CubicSpline(shape.s, np.column_stack([shape.phi, shape.T, shape.strain]))(x * L).T
+    phi, T_s, e = _between(shape, x * L)
     flow = np.interp(x * L, shape.s, shape.flow)
     area = (1.0 + e) * (1.0 - cable.poisson_ratio * e)
     k_n, k_t = cable.normal_drag(tow.water_density) * area, cable.tangential_drag(tow.water_density)
@@ -173,7 +173,7 @@ def prepare(
     vertical = not flowing and bool(np.all(np.abs(shape.phi - 0.5 * math.pi) < 1e-12))
     cosine = np.zeros(J) if vertical else np.cos(phi)
     n = np.arange(1, harmonics + 1)[:, None]
-    k = np.arange(2 * harmonics + 1)[None, :]
+    k = np.arange(2 * harmonics + 1)[:, None]
     K = min(_AXIAL_DEGREE, J)
     V = np.polynomial.legendre.legvander(node, K)
     degree = np.arange(K)
@@ -182,7 +182,7 @@ def prepare(
     integral[:, 0] = x
     integral[:, 1:] = 0.5 * (V[:, 2 : K + 1] - V[:, : K - 1]) / (2.0 * degree[1:] + 1.0)
     bottom, upper = (0.5 * math.pi, 0.5 * math.pi) if vertical else (float(shape.phi[0]), float(shape.phi[-1]))
-    scalar = np.zeros(22)
+    scalar = np.zeros(23)
     scalar[LENGTH], scalar[AXIAL_STIFFNESS] = L, cable.axial_stiffness
     scalar[WEIGHT], scalar[LATERAL_MASS] = cable.weight_in_water, cable.mass + cable.added_mass
     scalar[TANGENTIAL_DRAG] = k_t
@@ -191,6 +191,7 @@ def prepare(
     scalar[TENSION_0], scalar[FLOW_0] = shape.T[0], shape.flow[0]
     scalar[MEAN_STRAIN] = 0.5 * (weight @ e)
     scalar[AXIAL_LOSS] = cable.axial_damping
+    scalar[AXIAL_MASS] = cable.mass
     scalar[TENSION_TOP] = shape.T[-1]
     scalar[BEND_0] = 0.0 if vertical else _end_slope(shape)
     scalar[STRETCH_0] = 1.0 / (1.0 + shape.strain[0])
@@ -213,11 +214,31 @@ def prepare(
         scalar=scalar,
         station=station,
         sines=sines,
-        sines_t=np.ascontiguousarray(sines.transpose(0, 2, 1)),
-        moments=np.array([np.cos(k * math.pi * x[:, None]), np.sin(k * math.pi * x[:, None])]),
+        moments=np.array([np.cos(k * math.pi * x), np.sin(k * math.pi * x)]),
         axial=np.array([A, integral.T]),
         body=body_array(tow),
     )
+
+
+@cache
+def _gauss(stations: int) -> tuple[Floats, Floats]:
+    """Gauss-Legendre nodes and weights on (-1, 1)."""
+    return np.polynomial.legendre.leggauss(stations)
+
+
+def _between(shape: StaticShape, s: Floats) -> Floats:
+    """phi, T and strain (3, J) of the shape at the places s: the cubic through the four nodes around each."""
+    last = shape.s.size - 1
+    width = min(4, last + 1)
+    first = np.clip(np.searchsorted(shape.s, s) - 2, 0, last + 1 - width)
+    near = first + np.arange(width)[:, None]
+    node = shape.s[near]
+    weight = np.ones((width, s.size))
+    for i in range(width):
+        for k in range(width):
+            if k != i:
+                weight[i] *= (s - node[k]) / (node[i] - node[k])
+    return np.array([(weight * of[near]).sum(axis=0) for of in (shape.phi, shape.T, shape.strain)])
 
 
 def _shear(tow: Tow, z: Floats) -> Floats:

@@ -11,19 +11,19 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from models.kernels import kernel
+from models.kernels import inline_kernel
 from models.spectral.basis import FLOW_0, PITCH, SHEAR_0, TANGENT_X, TANGENT_Z, Fields
+from models.spectral.workspace import FORCE, LEVER, LOAD, LOAD_MASS, MOMENTUM, SPIN, V, Y
 
 Floats = NDArray[np.float64]
 
 
-@kernel
-def end_motion(f: Fields, b: Floats, w: Floats, y: Floats, v: Floats, lever: Floats, spin: Floats) -> None:
-    """Fill y[:2], v[:2] from the body's position b and velocity w; `lever`, `spin` (2,): d(y)/d(Phi) and its rate."""
+@inline_kernel
+def end_motion(f: Fields, b: Floats, w: Floats, cable: Floats) -> None:
+    """Fill the cable's lower end in `cable` (rows Y, V), and d(y)/d(Phi) and its rate (rows LEVER, SPIN)."""
     t_x, t_z = f.scalar[TANGENT_X], f.scalar[TANGENT_Z]
     ex, ez, vx, vz = b[0], b[1], w[0], w[1]
-    lever[0] = lever[1] = spin[0] = spin[1] = 0.0
-    if b.size == 3:
+    if f.body.size > 3:
         P, Q = f.body[13], f.body[14]
         s, c = math.sin(b[2]), math.cos(b[2])
         s0, c0 = math.sin(f.scalar[PITCH]), math.cos(f.scalar[PITCH])
@@ -32,21 +32,21 @@ def end_motion(f: Fields, b: Floats, w: Floats, y: Floats, v: Floats, lever: Flo
         lx, lz = -P * s - Q * c, P * c - Q * s
         vx += lx * w[2]
         vz += lz * w[2]
-        lever[0], lever[1] = t_x * lx + t_z * lz, -t_z * lx + t_x * lz
+        cable[LEVER, 0], cable[LEVER, 1] = t_x * lx + t_z * lz, -t_z * lx + t_x * lz
         sx, sz = -lz * w[2], lx * w[2]
-        spin[0], spin[1] = t_x * sx + t_z * sz, -t_z * sx + t_x * sz
-    y[0], y[1] = t_x * ex + t_z * ez, -t_z * ex + t_x * ez
-    v[0], v[1] = t_x * vx + t_z * vz, -t_z * vx + t_x * vz
+        cable[SPIN, 0], cable[SPIN, 1] = t_x * sx + t_z * sz, -t_z * sx + t_x * sz
+    cable[Y, 0], cable[Y, 1] = t_x * ex + t_z * ez, -t_z * ex + t_x * ez
+    cable[V, 0], cable[V, 1] = t_x * vx + t_z * vz, -t_z * vx + t_x * vz
 
 
-@kernel
+@inline_kernel
 def body_balance(f: Fields, b: Floats, w: Floats, momentum: Floats, F: Floats) -> None:
     """Fill the body's own momentum and the forces on it other than the cable's."""
     flow = f.scalar[FLOW_0] + f.scalar[SHEAR_0] * b[1]
-    if b.size == 2:
+    if f.body.size == 3:
         m, k, W = f.body[0], f.body[1], f.body[2]
         u, v = w[0] - flow, w[1]
-        speed = math.hypot(u, v)
+        speed = math.sqrt(u * u + v * v)
         momentum[0], momentum[1] = m * w[0], m * w[1]
         F[0], F[1] = -k * speed * u, -k * speed * v - W
         return
@@ -68,16 +68,35 @@ def body_balance(f: Fields, b: Floats, w: Floats, momentum: Floats, F: Floats) -
     F[2] = B * (r_bP * c - r_bQ * s) - k_r * w[2] * abs(w[2]) - k * (r_dP * v - r_dQ * u)
 
 
-@kernel
-def couple(
-    f: Fields, lever: Floats, spin: Floats, cable_pi: Floats, cable_F: Floats, momentum: Floats, F: Floats
-) -> None:
-    """Add the cable's end momentum and force, carried to the body by the transposed Jacobian."""
+@inline_kernel
+def bear(f: Fields, b: Floats, w: Floats, F: Floats, cable: Floats, end: Floats) -> None:
+    """Fill what the body bears along the cable: its own force F there, and its mass.
+
+    A towfish gives way by turning too: 1/M_t = t M^-1 t + lever^2/J, without the moment of its added mass.
+    """
     t_x, t_z = f.scalar[TANGENT_X], f.scalar[TANGENT_Z]
-    momentum[0] += t_x * cable_pi[0] - t_z * cable_pi[1]
-    momentum[1] += t_z * cable_pi[0] + t_x * cable_pi[1]
-    F[0] += t_x * cable_F[0] - t_z * cable_F[1]
-    F[1] += t_z * cable_F[0] + t_x * cable_F[1]
-    if momentum.size == 3:
-        momentum[2] += lever[0] * cable_pi[0] + lever[1] * cable_pi[1]
-        F[2] += lever[0] * cable_F[0] + lever[1] * cable_F[1] + spin[0] * cable_pi[0] + spin[1] * cable_pi[1]
+    if f.body.size == 3:
+        end[LOAD], end[LOAD_MASS] = t_x * F[0] + t_z * F[1], f.body[0]
+        return
+    s, c = math.sin(b[2]), math.cos(b[2])
+    M_P, M_Q, J = f.body[0] + f.body[1], f.body[0] + f.body[2], f.body[3]
+    t_P, t_Q = t_x * c + t_z * s, -t_x * s + t_z * c
+    lever = cable[LEVER, 0]
+    give = t_P * t_P / M_P + t_Q * t_Q / M_Q + lever * lever / J
+    free = t_P * (F[0] * c + F[1] * s) / M_P + t_Q * (-F[0] * s + F[1] * c) / M_Q
+    free += lever * F[2] / J + cable[SPIN, 0] * w[2]
+    end[LOAD], end[LOAD_MASS] = free / give, 1.0 / give
+
+
+@inline_kernel
+def couple(f: Fields, cable: Floats, momentum: Floats, F: Floats) -> None:
+    """Add the cable's end momentum and force (rows MOMENTUM, FORCE), carried to the body by the transposed Jacobian."""
+    t_x, t_z = f.scalar[TANGENT_X], f.scalar[TANGENT_Z]
+    momentum[0] += t_x * cable[MOMENTUM, 0] - t_z * cable[MOMENTUM, 1]
+    momentum[1] += t_z * cable[MOMENTUM, 0] + t_x * cable[MOMENTUM, 1]
+    F[0] += t_x * cable[FORCE, 0] - t_z * cable[FORCE, 1]
+    F[1] += t_z * cable[FORCE, 0] + t_x * cable[FORCE, 1]
+    if f.body.size > 3:
+        for i in range(2):
+            momentum[2] += cable[LEVER, i] * cable[MOMENTUM, i]
+            F[2] += cable[LEVER, i] * cable[FORCE, i] + cable[SPIN, i] * cable[MOMENTUM, i]

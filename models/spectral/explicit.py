@@ -11,13 +11,14 @@ from numpy.typing import NDArray
 
 from models.kernels import kernel
 from models.spectral.basis import LENGTH, PITCH, Fields
-from models.spectral.forces import TENSION, WORK_ROWS
 from models.spectral.system import (
     BUDGET,
     DONE,
+    LARGEST_ANGLE,
     NO_CONVERGENCE,
     NOT_FINITE,
     SLACK,
+    STEEP,
     evaluate,
     factor,
     ship_at,
@@ -25,6 +26,7 @@ from models.spectral.system import (
     substitute,
 )
 from models.spectral.winch import pay_out, steer
+from models.spectral.workspace import CABLE_ROWS, END_ROWS, PAID, PHI, SUM_ROWS, T_BOTTOM, T_TOP, TENSION, WORK_ROWS, Y
 
 Floats = NDArray[np.float64]
 
@@ -54,9 +56,9 @@ def march_explicit(
     state, whole, halves = np.zeros(2 * n), np.zeros(2 * n), np.zeros(2 * n)
     k1, slope, trial, total = np.zeros(2 * n), np.zeros(2 * n), np.zeros(2 * n), np.zeros(2 * n)
     w, pi, F, error_w = np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n)
-    cable, station = np.zeros((7, 2 + N)), np.zeros((WORK_ROWS, J))
-    A, Y, pivot = np.zeros((n, n)), np.zeros((2 + N, 2 + N)), np.zeros(n, dtype=np.int64)
-    end, memory = np.zeros(7), np.zeros(5)
+    cable, station = np.zeros((CABLE_ROWS, 2 + N)), np.zeros((WORK_ROWS, J))
+    A, W, pivot = np.zeros((n, n)), np.zeros((2 + N + SUM_ROWS, 2 * N + 1)), np.zeros(n, dtype=np.int64)
+    end, memory = np.zeros(END_ROWS), np.zeros(5)
     winch, control_time, t, place = control[0] > 0.0, times[0], times[0], 0
     if nb == 3:
         state[2] = f.scalar[PITCH]
@@ -75,7 +77,7 @@ def march_explicit(
                 w[i] = 0.0
             evaluate(f, trial[:n], w, end, pi, F, cable, station)
             if not factored or nb == 3 or winch:
-                stage_matrix(f, trial[:n], w, end, 0.0, cable, station, A, Y)
+                stage_matrix(f, trial[:n], w, end, 0.0, cable, station, A, W)
                 if not factor(A, pivot):
                     return NOT_FINITE
                 factored = True
@@ -87,8 +89,11 @@ def march_explicit(
             for i in range(n):
                 slope[i], slope[n + i] = w[i], F[i]
             if phase == 0:
-                least, spot = cable[3, 0], 0.0
+                least, spot = end[T_BOTTOM], 0.0
                 for j in range(J):
+                    if not abs(station[PHI, j]) <= LARGEST_ANGLE:
+                        where[0], where[1] = t, f.station[0, j] * f.scalar[LENGTH]
+                        return STEEP if math.isfinite(station[PHI, j]) else NOT_FINITE
                     if not station[TENSION, j] >= least:
                         least, spot = station[TENSION, j], f.station[0, j] * f.scalar[LENGTH]
                 where[0], where[1] = t, spot
@@ -97,9 +102,9 @@ def march_explicit(
                 if abs(t - times[row]) <= 1e-9 * max(1.0, abs(t)):
                     for i in range(nb):
                         out[row, i], out[row, nb + i] = state[i], w[i]
-                    out[row, 2 * nb], out[row, 2 * nb + 1], out[row, 2 * nb + 2] = end[6], cable[3, 0], end[4]
+                    out[row, 2 * nb], out[row, 2 * nb + 1], out[row, 2 * nb + 2] = end[T_TOP], end[T_BOTTOM], end[PAID]
                     for i in range(2 + N):
-                        shapes[row, i] = cable[0, i]
+                        shapes[row, i] = cable[Y, i]
                     row += 1
                 if row == times.size:
                     return DONE

@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 from models.kernels import fast_kernel
 from models.spectral.basis import (
     AXIAL_LOSS,
+    AXIAL_MASS,
     AXIAL_STIFFNESS,
     BEND,
     BEND_0,
@@ -32,7 +33,6 @@ from models.spectral.basis import (
     CURVED,
     FLOW,
     FLOWING,
-    LATERAL_MASS,
     LENGTH,
     MOVED,
     NORMAL_DRAG,
@@ -52,223 +52,159 @@ from models.spectral.basis import (
     Fields,
     X,
 )
+from models.spectral.workspace import (
+    ALONG,
+    CHI,
+    ETA_2,
+    ETA_2_RATE,
+    LOAD,
+    LOAD_MASS,
+    NORMAL,
+    P_TOP,
+    P_TOP_CHANGE,
+    P_TOP_RATE,
+    PAID,
+    PAID_RATE,
+    PHI,
+    RATE,
+    SLOPE,
+    T_BOTTOM,
+    T_TOP,
+    TENSION,
+    WATER,
+    WORK,
+)
 
 Floats = NDArray[np.float64]
 
-#: Rows of the station workspace.
-PHI, TENSION, SLOPE, CHI, WORK, RATE, NORMAL, ALONG, WATER = range(9)
-WORK_ROWS = 9
+
+@fast_kernel
+def _integral(f: Fields, station: Floats, of: int, to: int) -> float:
+    """Fill row `to` of the workspace with the integral of row `of` from the vehicle on; that over the whole cable."""
+    K, J = f.axial.shape[1:]
+    whole = 0.0
+    for j in range(J):
+        station[to, j] = 0.0
+    for k in range(K):
+        c = 0.0
+        for j in range(J):
+            c += f.axial[0, k, j] * station[of, j]
+        if k == 0:
+            whole = c
+        for j in range(J):
+            station[to, j] += f.axial[1, k, j] * c
+    return whole
 
 
 @fast_kernel
-def cable_forces(f: Fields, y: Floats, v: Floats, end: Floats, F: Floats, station: Floats, grad: Floats) -> None:
-    """Fill F (2 + N,) [N], the station workspace and the gradient of the stretch `grad` (2 + N,).
+def cable_forces(f: Fields, y: Floats, v: Floats, end: Floats, F: Floats, station: Floats) -> None:
+    """Fill F (2 + N,) [N] and the station workspace; F[0] is what the whole cable pulls the vehicle with.
 
-    `end` is (p_top - l, its rate, eta_2, its rate, l, l', T_top): the last is filled with the tension at the top.
-    F[0] is the tension at the vehicle.
+    `end` (END_ROWS,) is named above: the tensions at both ends are filled.
     """
-    S, D, St, Dt = f.sines[0], f.sines[1], f.sines_t[0], f.sines_t[1]
-    N, J = S.shape
+    N, J = f.sines.shape[1:]
     p, field = f.scalar, f.station
-    x, c, stretch_s, bend_s = field[X], field[QUADRATURE], field[STRETCH], field[BEND]
-    sin_s, cos_s, flow, shear = field[SINE], field[COSINE], field[FLOW], field[SHEAR]
-    T_s, k_n = field[STATIC_TENSION], field[NORMAL_DRAG]
     L, EA, w, k_t = p[LENGTH], p[AXIAL_STIFFNESS], p[WEIGHT], p[TANGENTIAL_DRAG]
-    flowing, moved = p[FLOWING] != 0.0, p[MOVED] != 0.0
-    lam = 1.0 + end[4] / L
-    winch = end[4] != 0.0 or end[5] != 0.0
-    phi, T, slope, chi = station[PHI], station[TENSION], station[SLOPE], station[CHI]
-    q, rate, b, along, water = station[WORK], station[RATE], station[NORMAL], station[ALONG], station[WATER]
-    slant = (end[2] - y[1]) / (L * lam)
+    water, turn_s, turn_c = 0.0, 1.0, 0.0
+    flowing, moved, curved = p[FLOWING] != 0.0, p[MOVED] != 0.0, p[CURVED] != 0.0
+    lam = 1.0 + end[PAID] / L
+    winch = end[PAID] != 0.0 or end[PAID_RATE] != 0.0
+    slant, eta_1, eta_2 = (end[ETA_2] - y[1]) / (L * lam), y[1], end[ETA_2]
+    v_1, v_2 = v[1], end[ETA_2_RATE] - v[1]
     for j in range(J):
-        phi[j] = slant
-        water[j] = flow[j]
-        rate[j] = v[1] * (1.0 - x[j]) + end[3] * x[j]
+        station[PHI, j] = slant
+        station[RATE, j] = v_1 + v_2 * field[X, j]
     for n in range(N):
         a, d = y[2 + n] / lam, v[2 + n]
         for j in range(J):
-            phi[j] += a * D[n, j]
-            rate[j] += d * S[n, j]
-    stretch = end[0] - y[0]
-    K = f.axial.shape[1]
-    coefficient = np.zeros(K)
-    bend = 0.0
-    if p[CURVED] != 0.0:
+            station[PHI, j] += a * f.sines[1, n, j]
+            station[RATE, j] += d * f.sines[0, n, j]
+    stretch, bend = end[P_TOP] - y[0], 0.0
+    if curved:
         for j in range(J):
-            q[j] = y[1] * (1.0 - x[j]) + end[2] * x[j]
+            station[WORK, j] = eta_1 + (eta_2 - eta_1) * field[X, j]
         for n in range(N):
             a = y[2 + n]
             for j in range(J):
-                q[j] += a * S[n, j]
+                station[WORK, j] += a * f.sines[0, n, j]
         for j in range(J):
-            g = q[j] * bend_s[j]
-            for k in range(K):
-                coefficient[k] += f.axial[0, k, j] * g
-        bend = coefficient[0]
+            station[NORMAL, j] = station[WORK, j] * field[BEND, j]
+        bend = _integral(f, station, NORMAL, TENSION)
         stretch -= bend
         for j in range(J):
             # p(s), the axial deflection: the bend's share, and the uniform rest so that p meets both ends.
-            axial = y[0] + x[j] * (end[0] - y[0] - bend)
-            for k in range(K):
-                axial += f.axial[1, k, j] * coefficient[k]
+            axial = y[0] + field[X, j] * (end[P_TOP] - y[0] - bend) + station[TENSION, j]
             # Where the point x is, not the material that passes it: the payout moves it along.
-            axial += x[j] * end[4]
-            phi[j] += axial * bend_s[j] / lam
-            water[j] += shear[j] * (axial * sin_s[j] + q[j] * cos_s[j])
-        for k in range(K):
-            coefficient[k] = 0.0
-        for j in range(J):
-            g = rate[j] * bend_s[j]
-            for k in range(K):
-                coefficient[k] += f.axial[0, k, j] * g
-        bend = coefficient[0]
+            axial += field[X, j] * end[PAID]
+            station[PHI, j] += axial * field[BEND, j] / lam
+            sunk = axial * field[SINE, j] + station[WORK, j] * field[COSINE, j]
+            station[WATER, j] = field[FLOW, j] + field[SHEAR, j] * sunk
+            station[NORMAL, j] = station[RATE, j] * field[BEND, j]
+        bend = _integral(f, station, NORMAL, ALONG)
+    slip_0, slip_1 = v[0], end[P_TOP_RATE] - v[0] - bend
+    bow = 0.0
     for j in range(J):
-        along[j] = v[0] + x[j] * (end[1] - v[0] - bend)
-        if p[CURVED] != 0.0:
-            for k in range(K):
-                along[j] += f.axial[1, k, j] * coefficient[k]
-        phi[j] *= stretch_s[j]
-        stretch += 0.5 * lam * c[j] * phi[j] * phi[j]
+        slip = slip_0 + slip_1 * field[X, j]
+        station[ALONG, j] = slip + station[ALONG, j] if curved else slip
+        phi = station[PHI, j] * field[STRETCH, j]
+        station[PHI, j] = phi
+        bow += field[QUADRATURE, j] * phi * phi
     # The internal loss sees the linear part of the stretch's rate.
-    stretch += p[AXIAL_LOSS] * (end[1] - v[0] - bend)
+    stretch += 0.5 * lam * bow + p[AXIAL_LOSS] * slip_1
     mean_tension = EA / (L * lam) * stretch
 
     # Tangential: drag and the turned weight tilt the dynamic tension about its mean.
-    for k in range(K):
-        coefficient[k] = 0.0
     for j in range(J):
-        turn_s, turn_c = sin_s[j], cos_s[j]
-        if flowing and moved:
-            sine, cosine = math.sin(phi[j]), math.cos(phi[j])
-            turn_s, turn_c = sin_s[j] * cosine + cos_s[j] * sine, cos_s[j] * cosine - sin_s[j] * sine
-        slip = along[j] - water[j] * turn_c
-        f_t = -k_t * slip * abs(slip)
-        g = (w * cos_s[j] * phi[j] - f_t) * lam + field[STATIC_TANGENTIAL, j] + w * sin_s[j] * (lam - 1.0)
-        for k in range(K):
-            coefficient[k] += f.axial[0, k, j] * g
-        v_r = rate[j] + water[j] * turn_s
+        phi, v_r, slip = station[PHI, j], station[RATE, j], station[ALONG, j]
         if winch:
-            v_r -= (along[j] + x[j] * end[5]) * phi[j]
-        weight = c[j] * lam
-        slope[j] = weight * 2.0 * k_n[j] * abs(v_r)
-        chi[j] = -weight * f_t
+            v_r -= (slip + field[X, j] * end[PAID_RATE]) * phi
+        weight = field[QUADRATURE, j] * lam
         if flowing:
+            water, turn_s, turn_c = station[WATER, j] if curved else field[FLOW, j], field[SINE, j], field[COSINE, j]
             if moved:
-                chi[j] += slope[j] * water[j] * turn_c
-            b[j] = weight * (-k_n[j] * v_r * abs(v_r) - field[STATIC_NORMAL, j] + f_t * phi[j])
-        else:
-            b[j] = weight * (-k_n[j] * v_r * abs(v_r) + f_t * phi[j])
-    mean_tilt = 0.0
+                sine, cosine = math.sin(phi), math.cos(phi)
+                turn_s, turn_c = turn_s * cosine + turn_c * sine, turn_c * cosine - turn_s * sine
+            slip -= water * turn_c
+            v_r += water * turn_s
+        f_t = -k_t * slip * abs(slip)
+        drag = field[NORMAL_DRAG, j] * abs(v_r)
+        station[SLOPE, j] = 2.0 * weight * drag
+        station[CHI, j] = -weight * f_t
+        if flowing and moved:
+            station[CHI, j] += station[SLOPE, j] * water * turn_c
+        station[NORMAL, j] = weight * (f_t * phi - drag * v_r - field[STATIC_NORMAL, j])
+        turned = (w * field[COSINE, j] * phi - f_t) * lam
+        station[WORK, j] = turned + field[STATIC_TANGENTIAL, j] + w * field[SINE, j] * (lam - 1.0)
+    tilt, mean_tilt = _integral(f, station, WORK, TENSION), 0.0
     for j in range(J):
-        G = 0.0
-        for k in range(K):
-            G += f.axial[1, k, j] * coefficient[k]
-        T[j] = G
-        mean_tilt += c[j] * G / L
-    F[0] = p[TENSION_0] + mean_tension - mean_tilt
-    end[6] = p[TENSION_TOP] + mean_tension + coefficient[0] - mean_tilt
-    for n in range(1, N + 2):
-        F[n] = grad[n] = 0.0
-    grad[0] = -1.0
+        mean_tilt += field[QUADRATURE, j] * station[TENSION, j]
+    T_0 = mean_tension - mean_tilt / L
+    F[0] = p[TENSION_0] + T_0
+    # What moves along the cable takes its tension: m p_tt is its slope, p_tt linear between the ends.
+    m, a_2 = p[AXIAL_MASS] * L * lam, end[P_TOP_CHANGE]
+    a_1 = (F[0] + end[LOAD] - m / 6.0 * a_2) / (end[LOAD_MASS] + m / 3.0) if m > 0.0 else 0.0
+    T_0 -= m * (a_1 / 3.0 + a_2 / 6.0)
+    end[T_BOTTOM] = p[TENSION_0] + T_0
+    end[T_TOP] = p[TENSION_TOP] + T_0 + tilt + 0.5 * m * (a_1 + a_2)
+    F_1 = 0.0
     for j in range(J):
-        T_d = mean_tension + T[j] - mean_tilt
-        T[j] = T_s[j] + T_d
-        a = -c[j] * T[j] * phi[j]
+        x = field[X, j]
+        T_d = T_0 + station[TENSION, j] + m * x * (a_1 + 0.5 * (a_2 - a_1) * x)
+        T = field[STATIC_TENSION, j] + T_d
+        a = -field[QUADRATURE, j] * T * station[PHI, j]
         # The cable paid out carries the static load too, and spreads the static bend over its length.
-        b[j] += c[j] * bend_s[j] * (T_d - (lam - 1.0) * T_s[j])
-        F[1] += b[j] * (1.0 - x[j]) - a / L
-        # Gradient of the stretch: the coupling of lateral motion into the mean tension.
-        pull = c[j] * phi[j] * stretch_s[j]
-        bow = c[j] * bend_s[j]
-        grad[1] -= pull / L + bow * (1.0 - x[j])
-        for n in range(N):
-            F[2 + n] += a * Dt[j, n] + b[j] * St[j, n]
-            grad[2 + n] += pull * Dt[j, n] - bow * St[j, n]
+        spread = T_d - (lam - 1.0) * field[STATIC_TENSION, j]
+        b = station[NORMAL, j] + field[QUADRATURE, j] * field[BEND, j] * spread
+        F_1 += b * (1.0 - x) - a / L
+        station[TENSION, j], station[WORK, j], station[NORMAL, j] = T, a, b
+    F[1] = F_1
+    for n in range(N):
+        total = 0.0
+        for j in range(J):
+            total += station[WORK, j] * f.sines[1, n, j] + station[NORMAL, j] * f.sines[0, n, j]
+        F[2 + n] = total
     if p[WEAK] == 0.0:
         angle = slant
         for n in range(N):
             angle += (n + 1) * math.pi / (L * lam) * y[2 + n]
-        F[1] = F[0] * (angle + y[0] * p[BEND_0]) * p[STRETCH_0]
-
-
-@fast_kernel
-def cable_momentum(f: Fields, v: Floats, end: Floats, out: Floats) -> None:
-    """Generalised momentum of the lateral motion, M v + m_2 eta_2', (2 + N,) [N s]; the axial one is quasi-static."""
-    N = f.sines.shape[1]
-    scale = f.scalar[LATERAL_MASS] * (f.scalar[LENGTH] + end[4])
-    out[0] = 0.0
-    total = v[1] / 3.0 + end[3] / 6.0
-    for n in range(N):
-        odd = 1.0 if n % 2 == 0 else -1.0
-        inverse = 1.0 / ((n + 1) * math.pi)
-        total += v[2 + n] * inverse
-        out[2 + n] = scale * (0.5 * v[2 + n] + (v[1] + odd * end[3]) * inverse)
-    out[1] = scale * total if f.scalar[WEAK] != 0.0 else 0.0
-
-
-@fast_kernel
-def cable_matrix(f: Fields, end: Floats, gh: float, station: Floats, grad: Floats, A: Floats) -> None:
-    """Fill A (2 + N, 2 + N) with M - gh dF/dv - gh^2 dF/dy at the state of the last `cable_forces`.
-
-    Products of sines are sums of cosines, so the matrix needs the 2N + 1 moments of each station field, not
-    N^2 projections.
-    """
-    St, Dt, C2, S2 = f.sines_t[0], f.sines_t[1], f.moments[0], f.moments[1]
-    J, N = St.shape
-    p, x, c, stretch_s = f.scalar, f.station[X], f.station[QUADRATURE], f.station[STRETCH]
-    L, EA = p[LENGTH], p[AXIAL_STIFFNESS]
-    lam = 1.0 + end[4] / L
-    slope, chi, T, phi = station[SLOPE], station[CHI], station[TENSION], station[PHI]
-    M = 2 * N + 1
-    drag, pull, cross = np.zeros(M), np.zeros(M), np.zeros(M)
-    skewed = p[FLOWING] != 0.0
-    drag_lin, pull_lin = np.zeros(N), 0.0
-    cross_row, cross_col = np.zeros(N), np.zeros(N)
-    A11 = 0.0
-    for j in range(J):
-        a = gh * slope[j]
-        t = gh * gh * c[j] * T[j] * stretch_s[j] / lam
-        pull_lin += t
-        bottom = 1.0 - x[j]
-        A11 += a * bottom * bottom
-        for k in range(M):
-            drag[k] += a * C2[j, k]
-            pull[k] += t * C2[j, k]
-        for n in range(N):
-            drag_lin[n] += a * bottom * St[j, n]
-        if skewed:
-            z = gh * gh * chi[j] * stretch_s[j] / lam
-            A11 -= z * bottom / L
-            for k in range(M):
-                cross[k] += z * S2[j, k]
-            for n in range(N):
-                cross_row[n] += z * bottom * Dt[j, n]
-                cross_col[n] -= z * St[j, n] / L
-    scale = p[LATERAL_MASS] * L * lam
-    stiff = gh * (gh + p[AXIAL_LOSS]) * EA / (L * lam)
-    A[0, 0] = stiff
-    A[1, 1] = scale / 3.0 + A11 + pull_lin / (L * L) + stiff * grad[1] * grad[1]
-    A[0, 1] = A[1, 0] = stiff * grad[0] * grad[1]
-    for m in range(N):
-        wave_m = (m + 1) * math.pi / L
-        lateral = scale / ((m + 1) * math.pi) + drag_lin[m] - wave_m / L * pull[m + 1]
-        A[1, 2 + m] = lateral + cross_row[m] + stiff * grad[1] * grad[2 + m]
-        A[2 + m, 1] = lateral + cross_col[m] + stiff * grad[1] * grad[2 + m]
-        A[0, 2 + m] = A[2 + m, 0] = stiff * grad[0] * grad[2 + m]
-        for n in range(N):
-            low, high = abs(m - n), m + n + 2
-            wave_n = (n + 1) * math.pi / L
-            value = 0.5 * (drag[low] - drag[high] + wave_m * wave_n * (pull[low] + pull[high]))
-            if skewed:
-                value += 0.5 * wave_n * (cross[high] + (cross[low] if m >= n else -cross[low]))
-            A[2 + m, 2 + n] = value + stiff * grad[2 + m] * grad[2 + n]
-        A[2 + m, 2 + m] += 0.5 * scale
-    if p[WEAK] == 0.0:
-        for n in range(N + 2):
-            A[1, n] = 0.0
-        A[1, 1] = gh * gh * p[TENSION_0] / (L * lam) * p[STRETCH_0]
-        for n in range(N):
-            A[1, 2 + n] = -gh * gh * p[TENSION_0] * (n + 1) * math.pi / (L * lam) * p[STRETCH_0]
-        angle = phi[0]
-        for n in range(N + 2):
-            A[1, n] += stiff * angle * grad[n]
+        F[1] = end[T_BOTTOM] * (angle + y[0] * p[BEND_0]) * p[STRETCH_0]

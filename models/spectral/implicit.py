@@ -1,10 +1,9 @@
-"""Implicit steppers of the spectral model: TR-BDF2 with error control, and Newmark with corrector.
+"""Implicit steppers of the spectral model: diagonally implicit Runge-Kutta with error control, and Newmark.
 
 Both advance u (positions) and pi (momenta), u' = w, pi' = F(u, w, t), with the velocity w as the unknown of a
 stage: pi(w) - pi_hat - g h F(u_hat + g h w, w) = 0, so neither the ship's acceleration nor a division by a
-small step appears. TR-BDF2 is L-stable, of order 2, and carries an embedded third-order solution (Hosea and
-Shampine 1996) for its step. Newmark's average acceleration (beta 1/4, gamma 1/2) is the same stage with g = 1/2
-over the whole step, corrected until the velocity settles.
+small step appears. Newmark's average acceleration (beta 1/4, gamma 1/2) is one such stage over the whole step,
+corrected until the velocity settles.
 """
 
 import math
@@ -13,15 +12,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.kernels import kernel
-from models.spectral.basis import LENGTH, PITCH, Fields
+from models.spectral.basis import AXIAL_STIFFNESS, LENGTH, PITCH, Fields
 from models.spectral.body import end_motion
-from models.spectral.forces import TENSION, WORK_ROWS
+from models.spectral.dense import MOST_NODES, at_sample, local_error, predict
 from models.spectral.system import (
     BUDGET,
     DONE,
+    LARGEST_ANGLE,
     NO_CONVERGENCE,
     NOT_FINITE,
     SLACK,
+    STEEP,
     evaluate,
     factor,
     momentum,
@@ -29,19 +30,37 @@ from models.spectral.system import (
     stage_matrix,
     substitute,
 )
+from models.spectral.tableau import AVERAGE, DEFECT, ENDS, NODES, ORDER, STAGES
 from models.spectral.winch import pay_out, steer
+from models.spectral.workspace import (
+    CABLE_ROWS,
+    END_ROWS,
+    PAID,
+    PHI,
+    SUM_ROWS,
+    T_BOTTOM,
+    T_TOP,
+    TENSION,
+    WORK_ROWS,
+    Y,
+)
 
 Floats = NDArray[np.float64]
 
-_GAMMA = 1.0 - 1.0 / math.sqrt(2.0)
-_W = math.sqrt(2.0) / 4.0
-#: Weights of the embedded error: (b - b_hat) of TR-BDF2.
-_E1, _E2, _E3 = _W - (1.0 - _W) / 3.0, _W - (3.0 * _W + 1.0) / 3.0, _GAMMA - _GAMMA / 3.0
 _NEWTON_ITERATIONS = 10
 _RENEWAL = 4
-#: Step control: safety, and the weight of the sines' error beside the vehicle's.
+#: How closely Newton's iteration finds a stage, over the local tolerance: what it leaves is in the error's estimate.
+_CLOSELY = 3.0
+#: Step control: safety.
 _SAFETY = 0.9
-_WAVE_WEIGHT = 0.1
+#: Share of a step that has found a tension of zero, down to which shorter ones are tried before it is believed.
+_DOUBT = 1.0 / 256.0
+#: The fastest that Newton's iteration is believed to converge before it has been seen to.
+_PACE = 0.02
+#: Least growth that a step is changed for, and the rate of Newton's iteration that its factors are kept at.
+_GROW, _SLOW = 1.2, 0.1
+#: Share of the tension that Newton's last correction may change it by, at most and over its tolerance [s/m].
+_TENSION_SHARE, _TENSION_SHARE_BY = 1e-3, 100.0
 
 
 @kernel
@@ -60,13 +79,17 @@ def solve_stage(
     cable: Floats,
     station: Floats,
     A: Floats,
-    Y: Floats,
+    W: Floats,
     pivot: NDArray[np.int64],
+    pace: Floats,
+    r: Floats,
     counts: NDArray[np.int64],
 ) -> bool:
-    """Newton's iteration for the stage velocity w, with the factors kept while they converge."""
+    """Newton's iteration for the stage velocity w, with the factors kept while they converge.
+
+    `pace` is the rate that the present factors converged at and the axial stiffness EA/L [N/m]; `r` (n,) is workspace.
+    """
     n = u.size
-    r = np.empty(n)
     previous = math.inf
     for iteration in range(_NEWTON_ITERATIONS):
         for i in range(n):
@@ -76,8 +99,10 @@ def solve_stage(
         for i in range(n):
             r[i] = pi[i] - pi_hat[i] - gh * F[i]
         if fresh:
-            stage_matrix(f, u, w, end, gh, cable, station, A, Y)
+            stage_matrix(f, u, w, end, gh, cable, station, A, W)
             counts[1] += 1
+            # How fast new factors converge is not known: the last rate is trusted less and less until one is measured.
+            pace[0] **= 0.9
             if not factor(A, pivot):
                 return False
         substitute(A, pivot, r)
@@ -87,16 +112,24 @@ def solve_stage(
             size = max(size, abs(r[i]))
         if not size < 1e12:
             return False
-        rate = size / previous if iteration > 0 else 1.0
-        if size <= 0.1 * tolerance or (iteration > 0 and rate < 0.9 and size * rate / (1.0 - rate) <= tolerance):
+        # Along a stiff cable a small correction of the velocity is a large one of the tension.
+        share = min(_TENSION_SHARE, _TENSION_SHARE_BY * tolerance)
+        pull = gh * pace[1] * (abs(r[0]) + abs(r[1])) / (share * abs(end[T_BOTTOM]) + 1e-30)
+        size = max(size, 0.1 * tolerance * min(pull, 1e6))
+        if iteration > 0:
+            pace[0] = max(size / previous, _PACE)
+        rate = pace[0]
+        if size <= 0.1 * tolerance or (rate < 0.9 and size * rate / (1.0 - rate) <= tolerance):
             # The momentum is linear in the velocity, so the stage equation itself gives the force of the last
             # correction without another sweep over the stations.
             for i in range(n):
                 u[i] = u_hat[i] + gh * w[i]
-            momentum(f, u, w, end, pi, cable)
             if gh > 0.0:
+                momentum(f, u, w, end, pi, F, cable)
                 for i in range(n):
                     F[i] = (pi[i] - pi_hat[i]) / gh
+            else:
+                evaluate(f, u, w, end, pi, F, cable, station)
             return True
         # Factors that converge slowly are renewed, and those that need many iterations once.
         fresh = iteration > 0 and (rate > 0.25 or iteration == _RENEWAL)
@@ -125,41 +158,45 @@ def march(
     """March from times[0] to times[-1] and fill the results at the times.
 
     `out` (n, 2 nb + 3): the body's coordinates and velocity, tension at the top and at the vehicle, payout;
-    `shapes` (n, 2 + N): the cable's coordinates. `stepper` 0 is TR-BDF2 with error control from the first step h,
-    1 is Newmark with the fixed step h. `counts` are evaluations, factorisations, steps and rejections; `where`
-    (2,) is the time and the station of a failure.
+    `shapes` (n, 2 + N): the cable's coordinates. `stepper` 0 is the default of `tableau`, with error control
+    from the first step h, 1 is Newmark with the fixed step h. `counts` are evaluations, factorisations, steps and
+    rejections; `where` (2,) is the time and the station of a failure.
     """
     N, J = f.sines.shape[1], f.station.shape[1]
     nb = 3 if f.body.size > 3 else 2
     n = nb + N
-    stages = 3 if stepper == 0 else 2
-    u, pi = np.zeros((3, n)), np.zeros((3, n))
-    w, F, tension = np.zeros((3, n)), np.zeros((3, n)), np.zeros((3, 2))
-    u_hat, pi_hat, e = np.zeros(n), np.zeros(n), np.zeros(n)
-    w_old, w_mid = np.zeros(n), np.zeros(n)
-    cable, station = np.zeros((7, 2 + N)), np.zeros((WORK_ROWS, J))
-    A, Y, pivot = np.zeros((n, n)), np.zeros((2 + N, 2 + N)), np.zeros(n, dtype=np.int64)
-    end, memory = np.zeros(7), np.zeros(5)
-    t, stop, h_old = times[0], times[-1], h
+    if stepper == 0:
+        a, c, d = STAGES, NODES, DEFECT
+    else:
+        a, c, d = AVERAGE, ENDS, ENDS
+    last = c.size - 1
+    gamma, order = a[last, last], ORDER
+    u, pi, F = np.zeros((last + 1, n)), np.zeros((last + 1, n)), np.zeros((last + 1, n))
+    w, tension = np.zeros((2, last + 1, n)), np.zeros((last + 1, 2))
+    u_hat, pi_hat, e, r = np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n)
+    cable, spare, station = np.zeros((CABLE_ROWS, 2 + N)), np.zeros((CABLE_ROWS, 2 + N)), np.zeros((WORK_ROWS, J))
+    A, W, pivot = np.zeros((n, n)), np.zeros((2 + N + SUM_ROWS, 2 * N + 1)), np.zeros(n, dtype=np.int64)
+    end, memory, pace = np.zeros(END_ROWS), np.zeros(5), np.ones(2)
+    nodes, weights = np.zeros(MOST_NODES), np.zeros(MOST_NODES)
+    pace[1] = f.scalar[AXIAL_STIFFNESS] / f.scalar[LENGTH] if f.scalar[LENGTH] > 0.0 else 0.0
+    t, stop, h_old = times[0], times[-1], 0.0
     winch, control_time = control[0] > 0.0, t
-    error_old, rejected = 1.0, False
-    c = 2.0 * _GAMMA
+    error_old, rejected, floor, now, factored = 1.0, False, 0.0, 0, 0.0
     if nb == 3:
         u_hat[2] = f.scalar[PITCH]
     place = ship_at(f, t, knots, ship, 0, end)
     # A jump of the ship's speed at the start is an impulse: the momentum stays at rest.
     if not solve_stage(
-        f, u_hat, pi_hat, end, 0.0, 1e-12, True, w[0], u[0], pi[0], F[0], cable, station, A, Y, pivot, counts
-    ):
+        f, u_hat, pi_hat, end, 0.0, 1e-12, True, w[0, 0], u[0], pi[0], F[0], cable, station, A, W, pivot, pace, r,
+        counts,
+    ):  # fmt: skip
         return NOT_FINITE
-    for i in range(n):
-        w_old[i] = w_mid[i] = w[0, i]
     for i in range(nb):
-        out[0, i], out[0, nb + i] = u[0, i], w[0, i]
-    tension[0, 0], tension[0, 1] = end[6], cable[3, 0]
-    out[0, 2 * nb], out[0, 2 * nb + 1] = end[6], cable[3, 0]
+        out[0, i], out[0, nb + i] = u[0, i], w[0, 0, i]
+    tension[0, 0], tension[0, 1] = end[T_TOP], end[T_BOTTOM]
+    out[0, 2 * nb], out[0, 2 * nb + 1] = end[T_TOP], end[T_BOTTOM]
     for i in range(2 + N):
-        shapes[0, i] = cable[0, i]
+        shapes[0, i] = cable[Y, i]
     row = 1
     sliver = 1e-9 * (stop - times[0])
     while stop - t > sliver:
@@ -176,103 +213,86 @@ def march(
         remaining = limit - t
         step = remaining if h >= 0.999 * remaining else (0.5 * remaining if h > 0.5 * remaining else h)
         if stepper == 1:
-            step = min(h, remaining)
-        gh = (_GAMMA if stepper == 0 else 0.5) * step
-        ratio = step / h_old
+            step, pace[0] = min(h, remaining), 1.0
+        gh = gamma * step
+        renew = stepper == 1 or gh != factored or pace[0] > _SLOW
+        factored = gh
         error = math.inf
         ok = True
-        for k in range(1, stages):
-            ahead = c * step if stages - k == 2 else step
+        for k in range(1, last + 1):
             if winch:
-                pay_out(control, memory, t + ahead, end)
-            place = ship_at(f, t + ahead, knots, ship, place, end)
+                pay_out(control, memory, t + c[k] * step, end)
+            place = ship_at(f, t + c[k] * step, knots, ship, place, end)
+            ratio = h_old / step if stepper == 0 and step <= 2.0 * h_old else 0.0
+            predict(c, k, ratio, w[now], w[1 - now], nodes, weights, w[now, k])
             for i in range(n):
-                if k == 1:
-                    u_hat[i] = u[0, i] + gh * w[0, i]
-                    pi_hat[i] = pi[0, i] + gh * F[0, i]
-                    w[1, i] = w[0, i]
-                    if stepper == 0 and ratio <= 2.0:
-                        # The quadratic through the last step's three velocities, continued.
-                        a = 1.0 + c * ratio
-                        w[1, i] *= a * (a - c) / (1.0 - c)
-                        w[1, i] += w_old[i] * (a - c) * (a - 1.0) / c + w_mid[i] * a * (a - 1.0) / (c * (c - 1.0))
-                else:
-                    u_hat[i] = u[0, i] + step * _W * (w[0, i] + w[1, i])
-                    pi_hat[i] = pi[0, i] + step * _W * (F[0, i] + F[1, i])
-                    w[2, i] = w[0, i] + (w[1, i] - w[0, i]) / c
+                u_hat[i], pi_hat[i] = u[0, i], pi[0, i]
+            for j in range(k):
+                share = step * a[k, j]
+                for i in range(n):
+                    u_hat[i] += share * w[now, j, i]
+                    pi_hat[i] += share * F[j, i]
             ok = solve_stage(
-                f, u_hat, pi_hat, end, gh, 0.3 * tolerance, k == 1, w[k], u[k], pi[k], F[k], cable, station, A, Y,
-                pivot, counts,
+                f, u_hat, pi_hat, end, gh, _CLOSELY * tolerance, renew and k == 1, w[now, k], u[k], pi[k], F[k],
+                cable, station, A, W, pivot, pace, r, counts,
             )  # fmt: skip
             if not ok:
                 break
-            tension[k, 0], tension[k, 1] = end[6], cable[3, 0]
-        last = stages - 1
+            tension[k, 0], tension[k, 1] = end[T_TOP], end[T_BOTTOM]
         if ok and stepper == 1:
             error = 0.0
         elif ok:
-            for i in range(n):
-                e[i] = step * (_E1 * F[0, i] + _E2 * F[1, i] + _E3 * F[2, i])
-            substitute(A, pivot, e)
-            wave, error = 0.0, 0.0
-            for i in range(nb):
-                # A pitching body's rate counts at one metre from its centre.
-                error = max(error, abs(e[i]))
-            for i in range(nb, n):
-                wave += 0.5 * e[i] * e[i]
-            error = max(error, _WAVE_WEIGHT * math.sqrt(wave)) / tolerance
+            error = local_error(f.scalar, d, step, gh, nb, w[now], F, A, pivot, end, pace[1], e) / tolerance
         if not error <= 1.0:
             counts[3] += 1
             rejected = True
             if stepper == 1:
                 return NO_CONVERGENCE
-            h = step * (max(0.2, 0.8 * error ** (-1.0 / 3.0)) if error < 1e6 else 0.25)
+            h = step * (max(0.2, 0.8 * error ** (-1.0 / order)) if error < 1e6 else 0.25)
             if h < 1e-10 * (stop - times[0]):
                 return NO_CONVERGENCE
             continue
         # Accepted. A cable pushes nothing: stop where it would.
-        least, spot = cable[3, 0], 0.0
+        least, spot = end[T_BOTTOM], 0.0
         for j in range(J):
+            if not abs(station[PHI, j]) <= LARGEST_ANGLE:
+                where[0], where[1] = t + step, f.station[0, j] * f.scalar[LENGTH]
+                return STEEP if math.isfinite(station[PHI, j]) else NOT_FINITE
             if not station[TENSION, j] >= least:
                 least, spot = station[TENSION, j], f.station[0, j] * f.scalar[LENGTH]
         if not least > 0.0:
+            # Along a stiff cable a long step errs in tension more than in velocity: believed of a short one only.
+            if stepper == 0 and math.isfinite(least) and (floor == 0.0 or step > floor):
+                floor = step * _DOUBT if floor == 0.0 else floor
+                counts[3] += 1
+                rejected = True
+                h = 0.25 * step
+                continue
             where[0], where[1] = t + step, spot
             return SLACK if math.isfinite(least) else NOT_FINITE
+        if step * _DOUBT >= floor:
+            floor = 0.0
         while row < times.size and times[row] <= t + step + sliver:
             s = min((times[row] - t) / step, 1.0)
-            # Velocities and tensions: quadratic through the three stages of TR-BDF2, linear over a Newmark step.
-            bow = s * (s - 1.0)
-            at_0, at_1, at_2 = 1.0 - s + bow / c, bow / (c * (c - 1.0)), s + bow / (1.0 - c)
-            if stepper == 1:
-                at_0, at_1, at_2 = 1.0 - s, s, 0.0
-            for i in range(n):
-                position = (
-                    (1.0 + 2.0 * s) * (1.0 - s) ** 2 * u[0, i]
-                    + s * (1.0 - s) ** 2 * step * w[0, i]
-                    + s * s * (3.0 - 2.0 * s) * u[last, i]
-                    + s * s * (s - 1.0) * step * w[last, i]
-                )
-                if i < nb:
-                    out[row, i], out[row, nb + i] = position, at_0 * w[0, i] + at_1 * w[1, i] + at_2 * w[2, i]
-                else:
-                    shapes[row, 2 + i - nb] = position
-            for i in range(2):
-                out[row, 2 * nb + i] = at_0 * tension[0, i] + at_1 * tension[1, i] + at_2 * tension[2, i]
+            at_sample(c, s, step, nb, u, w[now], tension, weights, out[row], shapes[row])
             if winch:
                 pay_out(control, memory, times[row], end)
-                out[row, 2 * nb + 2] = end[4]
-            end_motion(f, out[row, :nb], out[row, nb : 2 * nb], shapes[row], cable[1], cable[5, :2], cable[6, :2])
+                out[row, 2 * nb + 2] = end[PAID]
+            end_motion(f, out[row, :nb], out[row, nb : 2 * nb], spare)
+            shapes[row, 0], shapes[row, 1] = spare[Y, 0], spare[Y, 1]
             row += 1
         tension[0, 0], tension[0, 1] = tension[last, 0], tension[last, 1]
+        now = 1 - now
         for i in range(n):
-            w_old[i], w_mid[i] = w[0, i], w[1, i]
-            u[0, i], w[0, i], pi[0, i], F[0, i] = u[last, i], w[last, i], pi[last, i], F[last, i]
+            w[now, 0, i] = w[1 - now, last, i]
+            u[0, i], pi[0, i], F[0, i] = u[last, i], pi[last, i], F[last, i]
         t += step
         counts[2] += 1
         h_old = step
         if stepper == 0:
             error = max(error, 1e-3)
-            grow = _SAFETY * error ** (-0.7 / 3.0) * error_old ** (0.4 / 3.0)
-            h = step * min(1.0 if rejected else 2.0, max(0.3, grow))
+            grow = _SAFETY * error ** (-0.7 / order) * error_old ** (0.4 / order)
+            # A step that could grow but little is kept, and its factors with it.
+            h = step if 1.0 <= grow < _GROW else step * min(1.0 if rejected else 2.0, max(0.3, grow))
             error_old, rejected = error, False
     return DONE if row == times.size else NO_CONVERGENCE

@@ -7,13 +7,14 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from models.quantity import InvalidInput, NumericalFailure
+from models.quantity import NumericalFailure
 from models.spectral.basis import Fields, prepare
 from models.spectral.explicit import march_explicit
 from models.spectral.implicit import march
-from models.spectral.system import BUDGET, DONE, NOT_FINITE, SLACK
+from models.spectral.refusals import check, fail, refuse_axial_waves
+from models.spectral.system import DONE
 from models.spectral.winch import Winch, control_arrays
-from models.statics import SlackCable, StaticShape, static_shape
+from models.statics import StaticShape, static_shape
 from models.tow import Tow, refuse_sections_and_thrust
 from models.trace import Trace
 from models.vehicle import Towfish
@@ -26,7 +27,7 @@ Start = Literal["rest", "steady"]
 #: Most steps of a run, accepted and rejected.
 STEP_BUDGET = 5_000_000
 #: Local error per step that a wanted error of the whole record allows, measured on the built-in configurations.
-_LOCAL_SHARE = 0.24
+_LOCAL_SHARE: dict[Stepper, float] = {"implicit": 0.024, "newmark": 0.24, "runge-kutta": 0.24}
 #: Harmonics and tolerance of the companion run, and how much smaller the error of the finer run is at least.
 _COMPANION_HARMONICS, _COMPANION_TOLERANCE, _COMPANION_RATIO = 0.6, 4.0, 0.3
 _REFINEMENTS = 5
@@ -121,18 +122,19 @@ def simulate(
     NumericalFailure
         The steps do not converge, the step budget runs out, or the error stays above the tolerance.
     """
-    _check(ship, tolerance, stepper, start, step)
+    check(ship, tolerance, stepper, STEPPERS, start, step)
     refuse_sections_and_thrust(tow, "The spectral simulator")
     if start == "steady":
         tow = replace(tow, speed=initial_speed(ship))
     shape = static_shape(tow)
+    refuse_axial_waves(tow, ship, shape, tolerance)
     options = {"drag_angle": drag_angle, "end_condition": end_condition, "allow_aliasing": allow_aliasing}
 
     def run(sines: int, local: float, newmark_step: float) -> SpectralResult:
         fields = prepare(tow, harmonics=sines, stations=stations, shape=shape, **options)  # type: ignore[arg-type]
-        return _march(tow, ship, shape, fields, stepper, local, newmark_step, winch)
+        return advance(tow, ship, shape, fields, stepper=stepper, local=local, newmark_step=newmark_step, winch=winch)
 
-    local = _LOCAL_SHARE * tolerance
+    local = local_error(stepper, tolerance)
     longest = float(np.diff(ship.t).max())
     newmark_step = step if step is not None else min(longest, 40.0 * math.sqrt(tolerance))
     if harmonics is not None and (stepper != "newmark" or step is not None):
@@ -143,18 +145,18 @@ def simulate(
     series = 0.0
     for _ in range(_REFINEMENTS):
         fine = run(sines, local, newmark_step)
-        surge, heave = _COMPANION_RATIO * _rms_difference(fine, coarse)
+        across, along = _COMPANION_RATIO * _rms_difference(fine, coarse)
         if fine.harmonics != coarse.harmonics:
-            # What the shorter series costs shows in surge; it stands until the series is lengthened again.
-            series = surge
-        error = math.hypot(max(surge, series), heave)
+            # What the shorter series costs shows across the cable; it stands until the series is lengthened again.
+            series = across
+        error = math.hypot(max(across, series), along)
         if error <= tolerance:
             return replace(fine, error=error)
         coarse = fine
         local /= _COMPANION_TOLERANCE
         if step is None:
             newmark_step *= 0.5
-        if harmonics is None and max(surge, series) > _SERIES_SHARE * tolerance:
+        if harmonics is None and max(across, series) > _SERIES_SHARE * tolerance:
             sines = min(_MOST_HARMONICS, math.ceil(sines / _COMPANION_HARMONICS))
     raise NumericalFailure(
         f"The spectral simulator's estimated error in the vehicle's velocity is still {error:.3g} m/s RMS over the "
@@ -164,10 +166,14 @@ def simulate(
 
 
 def _rms_difference(one: SpectralResult, other: SpectralResult) -> Floats:
-    """RMS difference of the vehicles' velocities in surge and heave, (2,) [m/s]."""
+    """RMS difference of the vehicles' velocities across and along the static shape's chord, (2,) [m/s]."""
     assert one.vehicle.velocity is not None
     assert other.vehicle.velocity is not None
-    rms: Floats = np.sqrt(np.mean((one.vehicle.velocity - other.vehicle.velocity) ** 2, axis=0))[[0, 2]]
+    x, _, z = (one.vehicle.velocity - other.vehicle.velocity).T
+    shape = one.shape
+    chord = math.atan2(-float(shape.z[0]), -float(shape.x[0]))
+    c, s = math.cos(chord), math.sin(chord)
+    rms: Floats = np.sqrt(np.mean(np.array([c * z - s * x, c * x + s * z]) ** 2, axis=1))
     return rms
 
 
@@ -195,36 +201,38 @@ def first_harmonics(tow: Tow, ship: Trace, shape: StaticShape, tolerance: float)
     return min(_MOST_HARMONICS, max(4, wanted))
 
 
-def _check(ship: Trace, tolerance: float, stepper: str, start: str, step: float | None) -> None:
-    if stepper not in STEPPERS:
-        raise InvalidInput(f"The stepper must be one of {', '.join(STEPPERS)}, but {stepper!r} was given.")
-    if start not in ("rest", "steady"):
-        raise InvalidInput(f"The start must be rest or steady, but {start!r} was given.")
-    if not (tolerance > 0.0 and math.isfinite(tolerance)):
-        raise InvalidInput(f"The tolerance must be above 0 m/s, but {tolerance:g} m/s was given.")
-    if step is not None and not (step > 0.0 and math.isfinite(step)):
-        raise InvalidInput(f"The step must be above 0 s, but {step:g} s was given.")
-    if not ship.valid.all():
-        i = int(np.argmin(ship.valid))
-        raise InvalidInput(f"The ship's trace must be complete, but its sample {i} at t = {ship.t[i]:g} s is missing.")
-    off = float(np.ptp(ship.position[:, 1]))
-    if off > 1e-6:
-        raise InvalidInput(
-            f"The spectral simulator is planar, but the ship leaves the plane by {off:.3g} m across its track; "
-            "project the track on one direction, or use the three-dimensional simulator."
-        )
+def local_error(stepper: Stepper, tolerance: float) -> float:
+    """Local error of a step that a wanted error of the whole record allows, both [m/s]."""
+    return _LOCAL_SHARE[stepper] * tolerance
 
 
-def _march(
+def advance(
     tow: Tow,
     ship: Trace,
     shape: StaticShape,
     fields: Fields,
+    *,
     stepper: Stepper,
     local: float,
-    newmark_step: float,
-    winch: Winch | None,
+    newmark_step: float = 1.0,
+    winch: Winch | None = None,
 ) -> SpectralResult:
+    """One run with tables that are ready: nothing is chosen, and nothing checked but that the steps succeed.
+
+    Parameters
+    ----------
+    shape, fields
+        The static shape, and the tables of sines and stations about it.
+    local
+        Error that a step may make [m/s]; of Newmark's method a thousandth of it is left by the corrector.
+    newmark_step
+        [s], of Newmark's method only.
+
+    Raises
+    ------
+    SlackCable, NumericalFailure
+        As `simulate` does.
+    """
     N, J = fields.sines.shape[1:]
     nb = 3 if isinstance(tow.vehicle, Towfish) else 2
     spline = ship.spline
@@ -244,11 +252,11 @@ def _march(
     if stepper == "runge-kutta":
         status = march_explicit(fields, knots, coefficients, ship.t, first, local, STEP_BUDGET, *rest)
     elif stepper == "newmark":
-        status = march(fields, knots, coefficients, ship.t, 1, newmark_step, 1e-2 * local, STEP_BUDGET, *rest)
+        status = march(fields, knots, coefficients, ship.t, 1, newmark_step, 1e-3 * local, STEP_BUDGET, *rest)
     else:
         status = march(fields, knots, coefficients, ship.t, 0, first, local, STEP_BUDGET, *rest)
     if status != DONE:
-        _fail(status, where, counts, tow)
+        fail(status, where, counts, tow, STEP_BUDGET)
     elapsed = ship.t - ship.t[0]
     position, velocity = np.zeros((len(ship), 3)), np.zeros((len(ship), 3))
     end_x, end_z = float(shape.x[0]), float(shape.z[0])
@@ -274,26 +282,4 @@ def _march(
         rejected=int(counts[3]),
         evaluations=int(counts[0]),
         error=None,
-    )
-
-
-def _fail(status: int, where: Floats, counts: NDArray[np.int64], tow: Tow) -> None:
-    time, spot = float(where[0]), float(where[1])
-    if status == SLACK:
-        raise SlackCable(
-            f"The cable goes slack at t = {time:.2f} s, s = {spot:.1f} m of {tow.cable.length:g} m from the vehicle: "
-            "its tension falls to zero, where the sine series about one shape no longer holds."
-        )
-    if status == NOT_FINITE:
-        raise NumericalFailure(
-            f"The spectral simulator left the finite range at t = {time:.2f} s, s = {spot:.1f} m (tension)."
-        )
-    if status == BUDGET:
-        raise NumericalFailure(
-            f"The spectral simulator used its budget of {STEP_BUDGET} steps by t = {time:.2f} s "
-            f"({int(counts[3])} rejected); allow a larger tolerance or a shorter record."
-        )
-    raise NumericalFailure(
-        f"The spectral simulator's step does not converge at t = {time:.2f} s (vehicle velocity); a smaller step, a "
-        "smoother ship record or the implicit stepper may help."
     )

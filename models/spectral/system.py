@@ -4,23 +4,45 @@ u = (body coordinates, Q_1 ... Q_N), w = u', pi the generalised momentum and F t
 cable's end follows the body (`body.end_motion`); its force and momentum come back through the transposed Jacobian.
 """
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
-from models.kernels import fast_kernel, kernel
-from models.spectral.basis import MEAN_STRAIN, TANGENT_X, TANGENT_Z, TOP_X, TOP_Z, Fields
-from models.spectral.body import body_balance, couple, end_motion
-from models.spectral.forces import cable_forces, cable_matrix, cable_momentum
+from models.kernels import fast_kernel, inline_kernel, kernel
+from models.spectral.basis import FLOW_0, MEAN_STRAIN, SHEAR_0, TANGENT_X, TANGENT_Z, TOP_X, TOP_Z, Fields
+from models.spectral.body import bear, body_balance, couple, end_motion
+from models.spectral.forces import cable_forces
+from models.spectral.matrix import cable_matrix, cable_momentum
+from models.spectral.workspace import (
+    CABLE_ROWS,
+    ETA_2,
+    ETA_2_RATE,
+    FORCE,
+    LEVER,
+    MOMENTUM,
+    P_TOP,
+    P_TOP_CHANGE,
+    P_TOP_RATE,
+    PAID,
+    PAID_CHANGE,
+    PAID_RATE,
+    SPIN,
+    V,
+    Y,
+)
 
 Floats = NDArray[np.float64]
 
 #: How a run ended: status codes of the steppers.
-DONE, SLACK, NO_CONVERGENCE, BUDGET, NOT_FINITE = range(5)
+DONE, SLACK, NO_CONVERGENCE, BUDGET, NOT_FINITE, STEEP = range(6)
+#: Largest deflection from the static shape that counts as small [rad].
+LARGEST_ANGLE = 1.2
 
 
 @kernel
 def ship_at(f: Fields, t: float, knots: Floats, ship: Floats, place: int, end: Floats) -> int:
-    """Fill end[:4] with the tow point's deflection and its rate in the static frame there.
+    """Fill `end` with the tow point's deflection, its rate and its acceleration along the cable there.
 
     `ship` (4, m, 2) are the coefficients of the cubic splines of the ship's x and z, counted from the steadily
     towed frame; returns the knot interval, where the next search starts.
@@ -31,99 +53,111 @@ def ship_at(f: Fields, t: float, knots: Floats, ship: Floats, place: int, end: F
     while place > 0 and t < knots[place]:
         place -= 1
     d = t - knots[place]
-    a, b, c, e = ship[0, place], ship[1, place], ship[2, place], ship[3, place]
-    x = ((a[0] * d + b[0]) * d + c[0]) * d + e[0]
-    z = ((a[1] * d + b[1]) * d + c[1]) * d + e[1]
-    vx = (3.0 * a[0] * d + 2.0 * b[0]) * d + c[0]
-    vz = (3.0 * a[1] * d + 2.0 * b[1]) * d + c[1]
+    x = ((ship[0, place, 0] * d + ship[1, place, 0]) * d + ship[2, place, 0]) * d + ship[3, place, 0]
+    z = ((ship[0, place, 1] * d + ship[1, place, 1]) * d + ship[2, place, 1]) * d + ship[3, place, 1]
+    vx = (3.0 * ship[0, place, 0] * d + 2.0 * ship[1, place, 0]) * d + ship[2, place, 0]
+    vz = (3.0 * ship[0, place, 1] * d + 2.0 * ship[1, place, 1]) * d + ship[2, place, 1]
+    ax = 6.0 * ship[0, place, 0] * d + 2.0 * ship[1, place, 0]
+    az = 6.0 * ship[0, place, 1] * d + 2.0 * ship[1, place, 1]
     top_x, top_z = f.scalar[TOP_X], f.scalar[TOP_Z]
     stretched = 1.0 + f.scalar[MEAN_STRAIN]
-    end[0] = top_x * x + top_z * z - stretched * end[4]
-    end[1] = top_x * vx + top_z * vz - stretched * end[5]
-    end[2] = -top_z * x + top_x * z
-    end[3] = -top_z * vx + top_x * vz
+    end[P_TOP] = top_x * x + top_z * z - stretched * end[PAID]
+    end[P_TOP_RATE] = top_x * vx + top_z * vz - stretched * end[PAID_RATE]
+    end[P_TOP_CHANGE] = top_x * ax + top_z * az - stretched * end[PAID_CHANGE]
+    end[ETA_2] = -top_z * x + top_x * z
+    end[ETA_2_RATE] = -top_z * vx + top_x * vz
     return place
 
 
-@kernel
+@inline_kernel
 def evaluate(
     f: Fields, u: Floats, w: Floats, end: Floats, pi: Floats, F: Floats, cable: Floats, station: Floats
 ) -> None:
-    """Fill momentum and force at the level of the body and the sines.
-
-    `cable` (7, 2 + N) is a workspace: y, v, momentum, force, gradient of the stretch, lever, spin.
-    """
-    nb = u.size - f.sines.shape[1]
-    y, v, cable_pi, cable_F, grad = cable[0], cable[1], cable[2], cable[3], cable[4]
-    lever, spin = cable[5, :2], cable[6, :2]
-    end_motion(f, u[:nb], w[:nb], y, v, lever, spin)
-    for i in range(nb, u.size):
-        y[2 + i - nb], v[2 + i - nb] = u[i], w[i]
-    cable_forces(f, y, v, end, cable_F, station, grad)
-    cable_momentum(f, v, end, cable_pi)
-    body_balance(f, u[:nb], w[:nb], pi[:nb], F[:nb])
-    couple(f, lever, spin, cable_pi, cable_F, pi[:nb], F[:nb])
-    for i in range(nb, u.size):
-        pi[i], F[i] = cable_pi[2 + i - nb], cable_F[2 + i - nb]
+    """Fill momentum and force at the level of the body and the sines; `cable` (CABLE_ROWS, 2 + N) is a workspace."""
+    N = f.sines.shape[1]
+    nb = u.size - N
+    end_motion(f, u, w, cable)
+    for i in range(N):
+        cable[Y, 2 + i], cable[V, 2 + i] = u[nb + i], w[nb + i]
+    body_balance(f, u, w, pi, F)
+    bear(f, u, w, F, cable, end)
+    cable_forces(f, cable[Y], cable[V], end, cable[FORCE], station)
+    cable_momentum(f, cable[V], end, cable[MOMENTUM])
+    couple(f, cable, pi, F)
+    for i in range(N):
+        pi[nb + i], F[nb + i] = cable[MOMENTUM, 2 + i], cable[FORCE, 2 + i]
 
 
-@kernel
-def momentum(f: Fields, u: Floats, w: Floats, end: Floats, pi: Floats, cable: Floats) -> None:
-    """The momentum of `evaluate` alone; keeps cable[0] at the new coordinates."""
-    nb = u.size - f.sines.shape[1]
-    y, v, cable_pi = cable[0], cable[1], cable[2]
-    lever, spin, none = cable[5, :2], cable[6, :2], np.zeros(2)
-    end_motion(f, u[:nb], w[:nb], y, v, lever, spin)
-    for i in range(nb, u.size):
-        y[2 + i - nb], v[2 + i - nb] = u[i], w[i]
-    cable_momentum(f, v, end, cable_pi)
-    unused = np.zeros(nb)
-    body_balance(f, u[:nb], w[:nb], pi[:nb], unused)
-    couple(f, lever, spin, cable_pi, none, pi[:nb], unused)
-    for i in range(nb, u.size):
-        pi[i] = cable_pi[2 + i - nb]
+@inline_kernel
+def momentum(f: Fields, u: Floats, w: Floats, end: Floats, pi: Floats, F: Floats, cable: Floats) -> None:
+    """The momentum of `evaluate` alone; keeps the cable's coordinates, and leaves nothing of use in F[:3]."""
+    N = f.sines.shape[1]
+    nb = u.size - N
+    end_motion(f, u, w, cable)
+    for i in range(N):
+        cable[Y, 2 + i], cable[V, 2 + i] = u[nb + i], w[nb + i]
+    cable_momentum(f, cable[V], end, cable[MOMENTUM])
+    body_balance(f, u, w, pi, F)
+    couple(f, cable, pi, F)
+    for i in range(N):
+        pi[nb + i] = cable[MOMENTUM, 2 + i]
 
 
 @kernel
 def stage_matrix(
     f: Fields, u: Floats, w: Floats, end: Floats, gh: float, cable: Floats, station: Floats, A: Floats, Y: Floats
 ) -> None:
-    """Fill A with d(pi - gh F)/dw at a state that `evaluate` has just visited; Y (2 + N, 2 + N) is workspace."""
+    """Fill A with d(pi - gh F)/dw at a state that `evaluate` has just visited.
+
+    Y (2 + N + SUM_ROWS, 2 N + 1) is workspace: the matrix of the cable, and the sums of `cable_matrix`.
+    """
     N = f.sines.shape[1]
     nb = u.size - N
-    cable_matrix(f, end, gh, station, cable[4], Y)
-    J = np.zeros((2, nb))
-    J[0, 0], J[0, 1] = f.scalar[TANGENT_X], f.scalar[TANGENT_Z]
-    J[1, 0], J[1, 1] = -f.scalar[TANGENT_Z], f.scalar[TANGENT_X]
-    if nb == 3:
-        J[0, 2], J[1, 2] = cable[5, 0], cable[5, 1]
+    cable_matrix(f, end, gh, station, Y[2 + N :], Y)
+    t_x, t_z = f.scalar[TANGENT_X], f.scalar[TANGENT_Z]
     for i in range(nb):
+        # d(p_b, eta_1) over the body's coordinate i.
+        a, b = (t_x, -t_z) if i == 0 else ((t_z, t_x) if i == 1 else (cable[LEVER, 0], cable[LEVER, 1]))
         for k in range(nb):
-            total = 0.0
-            for a in range(2):
-                for c in range(2):
-                    total += J[a, i] * Y[a, c] * J[c, k]
-            A[i, k] = total
+            c, d = (t_x, -t_z) if k == 0 else ((t_z, t_x) if k == 1 else (cable[LEVER, 0], cable[LEVER, 1]))
+            A[i, k] = a * (Y[0, 0] * c + Y[0, 1] * d) + b * (Y[1, 0] * c + Y[1, 1] * d)
         for n in range(N):
-            A[i, nb + n] = J[0, i] * Y[0, 2 + n] + J[1, i] * Y[1, 2 + n]
-            A[nb + n, i] = Y[2 + n, 0] * J[0, i] + Y[2 + n, 1] * J[1, i]
+            A[i, nb + n] = a * Y[0, 2 + n] + b * Y[1, 2 + n]
+            A[nb + n, i] = Y[2 + n, 0] * a + Y[2 + n, 1] * b
     for m in range(N):
         for n in range(N):
             A[nb + m, nb + n] = Y[2 + m, 2 + n]
-    # The body's own part by differences, with the cable's end force and momentum held: 2 or 3 columns.
+    if nb == 2:
+        # Point: d/dw of m w + gh k |r| r, r the velocity through the water, which the depth changes in a shear.
+        x, z = w[0] - f.scalar[FLOW_0] - f.scalar[SHEAR_0] * u[1], w[1]
+        speed = math.sqrt(x * x + z * z)
+        over = 1.0 / speed if speed > 0.0 else 0.0
+        drag, sheared = gh * f.body[1], gh * f.scalar[SHEAR_0]
+        xx, xz, zz = drag * (speed + x * x * over), drag * x * z * over, drag * (speed + z * z * over)
+        A[0, 0] += f.body[0] + xx
+        A[0, 1] += xz - sheared * xx
+        A[1, 0] += xz
+        A[1, 1] += f.body[0] + zz - sheared * xz
+        return
+    _add_towfish(f, u, w, gh, cable, A)
+
+
+@kernel
+def _add_towfish(f: Fields, u: Floats, w: Floats, gh: float, cable: Floats, A: Floats) -> None:
+    """The towfish's own part of `stage_matrix` by differences, with the cable's end force and momentum held."""
+    nb, d = 3, 1e-6
     pi0, F0, pi1, F1 = np.zeros(nb), np.zeros(nb), np.zeros(nb), np.zeros(nb)
-    b, s = u[:nb].copy(), w[:nb].copy()
-    y, v, lever, spin = np.zeros(2), np.zeros(2), np.zeros(2), np.zeros(2)
-    held_pi, held_F = np.zeros(2), cable[3, :2].copy()
+    b, s, held = u[:nb].copy(), w[:nb].copy(), np.zeros((CABLE_ROWS, 3))
+    for i in range(2):
+        held[FORCE, i], held[LEVER, i], held[SPIN, i] = cable[FORCE, i], cable[LEVER, i], cable[SPIN, i]
     body_balance(f, b, s, pi0, F0)
-    couple(f, cable[5, :2], cable[6, :2], held_pi, held_F, pi0, F0)
+    couple(f, held, pi0, F0)
     for k in range(nb):
-        d = 1e-6
         s[k] += d
         b[k] += gh * d
-        end_motion(f, b, s, y, v, lever, spin)
+        end_motion(f, b, s, held)
         body_balance(f, b, s, pi1, F1)
-        couple(f, lever, spin, held_pi, held_F, pi1, F1)
+        couple(f, held, pi1, F1)
         for i in range(nb):
             A[i, k] += ((pi1[i] - pi0[i]) - gh * (F1[i] - F0[i])) / d
         s[k] -= d

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from models.kernels import kernel
 from models.payout import Payout, freeze_table
 from models.quantity import InvalidInput, check_quantities, non_negative, positive
+from models.spectral.workspace import PAID, PAID_CHANGE, PAID_RATE
 
 Floats = NDArray[np.float64]
 
@@ -103,11 +104,11 @@ def _braking(room: float, rate: float, period: float, limit: float) -> float:
 
 @kernel
 def pay_out(control: Floats, memory: Floats, t: float, end: Floats) -> None:
-    """Fill end[4:6] with payout and rate at a time in the control period."""
+    """Fill `end` with payout, rate and its change at a time in the control period."""
     since = t - memory[3]
     bend = (memory[2] - memory[1]) / control[1]
-    end[4] = memory[0] + (memory[1] + 0.5 * bend * since) * since
-    end[5] = memory[1] + bend * since
+    end[PAID] = memory[0] + (memory[1] + 0.5 * bend * since) * since
+    end[PAID_RATE], end[PAID_CHANGE] = memory[1] + bend * since, bend
 
 
 @kernel

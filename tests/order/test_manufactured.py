@@ -44,7 +44,7 @@ def test_the_stepper_of_the_reduced_models_on_a_manufactured_solution(links: int
         t = np.linspace(0.0, span, round(span / step) + 1)
         drive = Drive.from_trace(Trace.along_x(t, x(t) - x(0.0)), start="steady", max_step=step)
         drive = replace(drive, start_speed=speed)
-        motion = quadratic_motion(chain, drive)
+        motion = quadratic_motion(chain, drive, path="implicit")
         return float(np.sqrt(np.mean((motion.v - v(t)) ** 2)))
 
     errors = [error(step) for step in (8.0, 4.0, 2.0, 1.0)]

@@ -1,6 +1,7 @@
 """The spectral simulator's errors fall at their rates, and its default keeps its word."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 
 from data_synth.ships import StandardInput, standard_input
 from models.spectral import SpectralResult, simulate
+from models.spectral.tableau import DEFECT, EMBEDDED, NODES, STAGES
 from models.tow import Tow
 from models.trace import Trace
 
@@ -105,3 +107,32 @@ def test_runge_kutta_agrees_with_the_implicit_method(opening: tuple[Tow, Trace, 
     tow, ship, truth = opening
     assert difference(simulate(tow, ship, harmonics=10, tolerance=1e-5, stepper="runge-kutta"), truth) < 3e-5
     assert difference(simulate(tow, ship, harmonics=10, tolerance=1e-7), truth) < 1e-5
+
+
+def test_the_tableau_has_its_order_and_is_l_stable() -> None:
+    """Conditions of third order; the embedded solution is of second; every stage is of second order."""
+    ones, b = np.ones(4), STAGES[-1]
+    for weights, third in ((b, True), (EMBEDDED, False)):
+        assert weights @ ones == pytest.approx(1.0, abs=1e-14)
+        assert weights @ NODES == pytest.approx(1.0 / 2.0, abs=1e-14)
+        assert bool(abs(weights @ NODES**2 - 1.0 / 3.0) < 1e-14) is third
+        assert bool(abs(weights @ STAGES @ NODES - 1.0 / 6.0) < 1e-14) is third
+    np.testing.assert_allclose(STAGES @ NODES, NODES**2 / 2.0, atol=1e-14)
+    np.testing.assert_allclose(DEFECT, b - EMBEDDED)
+    assert NODES[-1] == pytest.approx(1.0, abs=1e-14)
+    # |R(iy)| <= 1 on the imaginary axis and R = 0 at infinity, with y' = z y.
+    for y in np.geomspace(1e-2, 1e6, 200):
+        assert abs(np.linalg.solve(np.eye(4) - 1j * y * STAGES, ones)[-1]) <= 1.0 + 1e-12
+    assert abs(np.linalg.solve(np.eye(4) + 1e9 * STAGES, ones)[-1]) < 1e-6
+
+
+def test_the_steps_along_a_stiff_cable_follow_the_ship(configurations: Callable[[str], Tow]) -> None:
+    """A thousand times as stiff and without loss, the vehicle heaves with the ship: steps alone, no companion run."""
+    tow = configurations("mangus-740")
+    stiff = replace(tow.cable, axial_stiffness=1e3 * tow.cable.axial_stiffness, axial_damping=0.0)
+    t = np.arange(0.0, 120.0, 0.25)
+    heave = 0.5 * (1.0 - np.cos(0.8 * t))
+    run = simulate(replace(tow, cable=stiff), Trace.along_x(t, np.zeros(t.size), heave), harmonics=4).vehicle
+    assert run.velocity is not None
+    miss = run.velocity[:, 2] - 0.4 * np.sin(0.8 * t)
+    assert np.sqrt(np.mean(miss**2)) < 5e-3

@@ -1,8 +1,8 @@
 """The steppers on published stiff problems, and at their order, where they are general enough to be run on them.
 
-General enough are the three of the spectral simulator: TR-BDF2, Newmark and Runge-Kutta march u' = w, pi(w)' = F(u, w,
-t) for any momentum and force. With pi = w - y(0) and F = f(t, w) their own source, interpreted, solves y' = f(t, y).
-The others are written for one equation each: see test_manufactured.py.
+General enough are the three of the spectral simulator: the implicit default, Newmark and Runge-Kutta march u' = w,
+pi(w)' = F(u, w, t) for any momentum and force. With pi = w - y(0) and F = f(t, w) their own source, interpreted, solves
+y' = f(t, y). The others are written for one equation each: see test_manufactured.py.
 
 Problems and solutions: Mazzia and Magherini, Test Set for Initial Value Problem Solvers, 2.4 (2008): van der Pol,
 HIRES, ROBER and OREGO; ROBER at 40 s and 4e5 s from Hindmarsh et al., CVODE's example cvRoberts.
@@ -20,6 +20,7 @@ from scipy.integrate import solve_ivp
 
 from models.spectral import explicit, implicit
 from models.spectral.system import DONE
+from models.spectral.workspace import T_BOTTOM
 
 Floats = NDArray[np.float64]
 Slope = Callable[[float, Floats], Floats]
@@ -63,7 +64,7 @@ class Interpreted:
             self.patch.setattr(module, name, value)
         n, points = self.begin.size, np.array(times)
         fields = SimpleNamespace(
-            sines=np.zeros((2, n - 2, 1)), station=np.zeros((12, 1)), body=np.zeros(3), scalar=np.zeros(22)
+            sines=np.zeros((2, n - 2, 1)), station=np.zeros((12, 1)), body=np.zeros(3), scalar=np.zeros(23)
         )
         # A winch that does nothing cuts the steps at its period.
         control = np.array([1.0, h, *np.zeros(6)]) if fixed else np.zeros(8)
@@ -82,11 +83,11 @@ class Interpreted:
         self, f: Any, u: Floats, w: Floats, end: Floats, pi: Floats, F: Floats, cable: Floats, station: Floats
     ) -> None:
         # Taut, so that the march goes on.
-        cable[3, 0], station[:] = 1.0, 1.0
+        end[T_BOTTOM], station[:] = 1.0, 1.0
         F[:] = self.f(end[0], w)
-        self._momentum(f, u, w, end, pi, cable)
+        self._momentum(f, u, w, end, pi, F, cable)
 
-    def _momentum(self, f: Any, u: Floats, w: Floats, end: Floats, pi: Floats, cable: Floats) -> None:
+    def _momentum(self, f: Any, u: Floats, w: Floats, end: Floats, pi: Floats, F: Floats, cable: Floats) -> None:
         pi[:], self.y = w - self.begin, w.copy()
 
     def _stage_matrix(
@@ -253,7 +254,9 @@ def test_the_implicit_steppers_keep_their_order_when_stiff(
         errors.append(np.abs(run(stepper, [0.0, 3.0], tolerance, h, fixed=True) - moving(3.0)).max())
         assert run.counts[2] == round(3.0 / h)
     orders = np.log2(np.array(errors[:-1]) / errors[1:])
-    assert np.all(np.abs(orders[-2:] - 2.0) < 0.2), (orders, errors)
+    # Far beyond its smallest time the default has the order of its stages.
+    due = 3.0 if stepper == IMPLICIT and rate == 1.0 else 2.0
+    assert np.all(np.abs(orders[-2:] - due) < 0.2), (orders, errors)
 
 
 def test_runge_kutta_with_extrapolation_is_of_fifth_order(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -208,3 +208,22 @@ def test_two_samples_are_a_straight_line(configurations: Callable[[str], Tow]) -
     two = simulate(tow, Trace.along_x([0.0, 60.0], [0.0, 12.0]), harmonics=6)
     many = simulate(tow, Trace.along_x(np.arange(0.0, 61.0), 0.2 * np.arange(0.0, 61.0)), harmonics=6)
     assert two.vehicle.position[-1, 0] == pytest.approx(many.vehicle.position[-1, 0], abs=1e-5)
+
+
+@pytest.mark.parametrize(("amplitude", "omega"), [(25.0, 2e-4), (250.0, 2e-4), (25.0, 1e-3)])
+def test_slow_motion_of_a_tied_vehicle_is_followed_in_few_steps(
+    amplitude: float, omega: float, configurations: Callable[[str], Tow]
+) -> None:
+    """Where every place is tied to the ship's the factors hide a step's error; it must be seen, and cheaply."""
+    tow = configurations("mangus-740")
+    t = np.linspace(0.0, 10.0 * math.pi / omega, 301)
+    ship = Trace.along_x(t, -amplitude * np.expm1(-((0.16 * omega * t) ** 3)) * np.sin(omega * t))
+    run = simulate(tow, ship)
+    exact = simulate(tow, ship, harmonics=run.harmonics, tolerance=1e-9)
+    assert run.vehicle.velocity is not None
+    assert exact.vehicle.velocity is not None
+    error = float(np.sqrt(np.mean(np.sum((run.vehicle.velocity - exact.vehicle.velocity) ** 2, axis=1))))
+    assert error < 1e-4
+    assert run.error is not None
+    assert error < 2.0 * run.error
+    assert run.steps < 500
