@@ -49,7 +49,7 @@ class Chain(NamedTuple):
     body_drag: Floats  # (m + 1, 3) [N s2/m2]
     current_depth: Floats  # (k,) [m], empty in still water
     current_x: Floats  # (k,) [m/s]
-    current_y: Floats
+    current_y: Floats  # empty where the chain is that of a plane, with current_x along it
     specific_weight: float  # of the water [N/m3]
     law: int
 
@@ -111,9 +111,7 @@ def build(system: TowedSystem, links: int) -> Layout:
         if part.body is not None:
             has_body[first[index]] = True
             bodies[first[index]] = _body(part, system.water_density)
-    current = system.current
-    still = current is None or not current.speed.any()
-    speeds = np.zeros((0, 2)) if current is None or still else current.velocity_at(current.depth)
+    depth, speeds = current_of(system)
     chain = Chain(
         parent=parent,
         part=part_of,
@@ -124,13 +122,21 @@ def build(system: TowedSystem, links: int) -> Layout:
         body_weight=np.ascontiguousarray(bodies[:, 1]),
         body_added_mass=np.ascontiguousarray(bodies[:, 2:5]),
         body_drag=np.ascontiguousarray(bodies[:, 5:8]),
-        current_depth=np.zeros(0) if current is None or still else np.array(current.depth),
+        current_depth=depth,
         current_x=np.ascontiguousarray(speeds[:, 0]),
         current_y=np.ascontiguousarray(speeds[:, 1]),
         specific_weight=system.water_density * GRAVITY,
         law=INCIDENCE if system.drag_law == "incidence" else QUADRATIC,
     )
     return Layout(chain=chain, lower_end=tuple(first[index] for index in range(len(counts))), links=counts)
+
+
+def current_of(system: TowedSystem) -> tuple[Floats, Floats]:
+    """Depths (k,) [m] and the current's horizontal velocity there (k, 2) [m/s], of no depth in still water."""
+    current = system.current
+    if current is None or not current.speed.any():
+        return np.zeros(0), np.zeros((0, 2))
+    return np.array(current.depth), current.velocity_at(current.depth)
 
 
 _LINK_FIELDS = (

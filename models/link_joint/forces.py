@@ -9,8 +9,6 @@
 | a, b | drag per length F = -(a n + b t) | N s/m2, N/m |
 | D, S | -dF/du, dF/dr | N s/m, N/m |
 
-Matrices are tuples of nine numbers, row by row: the compiler keeps them in registers.
-
 A link's drag is shared out between its ends as a linear element's is: each end gets half the length at a third of the
 link, with the velocity there and the tangent there, which turns linearly from one link's middle to the next one's.
 With the tangent of the chord alone the half link at a free end would cost most of the error.
@@ -21,14 +19,28 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from models.kernels import inline_kernel, inner_kernel, kernel
-from models.link_joint import columns as col
+from models.kernels import inline_kernel, inner_kernel
 from models.link_joint.chain import INCIDENCE
+from models.link_joint.columns import columns_of
+from models.link_joint.vectors import (
+    Axes,
+    Floats,
+    Matrix,
+    Vector,
+    across,
+    combined,
+    dot,
+    minus,
+    nought,
+    outer,
+    plus,
+    put,
+    times,
+    vector,
+    with_diagonal,
+)
 
-Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
-Three = tuple[float, float, float]
-Nine = tuple[float, float, float, float, float, float, float, float, float]
 
 #: Where W's two ranges of incidence meet [rad].
 _STEEP = math.radians(30.0)
@@ -41,20 +53,24 @@ FAR = 1.0 - NEAR
 _TINY = 1e-30
 
 
-@kernel
-def current_at(depths: Floats, x: Floats, y: Floats, z: float) -> tuple[float, float]:
+@inline_kernel
+def current_at(axes: Axes, depths: Floats, x: Floats, y: Floats, z: float) -> Vector:
     """The water's velocity [m/s] at height z: straight lines between the given depths, constant outside."""
-    k = depths.size
-    if k == 0:
-        return 0.0, 0.0
-    depth = -z
+    last, depth = depths.size - 1, -z
+    if last < 0:
+        return nought(axes)
+    above, below, share = last, last, 0.0
     if depth <= depths[0]:
-        return x[0], y[0]
-    for i in range(1, k):
-        if depth <= depths[i]:
-            share = (depth - depths[i - 1]) / (depths[i] - depths[i - 1])
-            return x[i - 1] + share * (x[i] - x[i - 1]), y[i - 1] + share * (y[i] - y[i - 1])
-    return x[k - 1], y[k - 1]
+        above, below = 0, 0
+    else:
+        for i in range(1, last + 1):
+            if depth <= depths[i]:
+                above, below, share = i - 1, i, (depth - depths[i - 1]) / (depths[i] - depths[i - 1])
+                break
+    along = x[above] + share * (x[below] - x[above])
+    if len(axes) == 2:
+        return along, 0.0
+    return along, y[above] + share * (y[below] - y[above]), 0.0
 
 
 @inline_kernel
@@ -78,93 +94,72 @@ def drag_law(law: int, kn: float, kt: float, un: float, ut: float) -> tuple[floa
 
 
 @inline_kernel
-def end_force(
-    law: int, kn: float, kt: float, ux: float, uy: float, uz: float, tx: float, ty: float, tz: float
-) -> tuple[float, float, float]:
+def end_force(law: int, kn: float, kt: float, u: Vector, t: Vector) -> Vector:
     """Drag per length F [N/m]."""
-    ut = ux * tx + uy * ty + uz * tz
-    nx, ny, nz = ux - ut * tx, uy - ut * ty, uz - ut * tz
-    un = math.sqrt(nx * nx + ny * ny + nz * nz)
-    a, b, _, _, _, _ = drag_law(law, kn, kt, un, ut)
-    return -(a * nx + b * tx), -(a * ny + b * ty), -(a * nz + b * tz)
+    ut = dot(u, t)
+    n = minus(u, times(ut, t))
+    a, b, _, _, _, _ = drag_law(law, kn, kt, math.sqrt(dot(n, n)), ut)
+    return combined(-a, n, -b, t)
 
 
 @inline_kernel
-def end_drag(
-    law: int, kn: float, kt: float, ux: float, uy: float, uz: float, tx: float, ty: float, tz: float, size: float
-) -> tuple[Three, Nine, Nine]:
-    """Drag per length F (3), D (9) and S (9) of a link of length `size` [m]."""
-    ut = ux * tx + uy * ty + uz * tz
-    nx, ny, nz = ux - ut * tx, uy - ut * ty, uz - ut * tz
-    un = math.sqrt(nx * nx + ny * ny + nz * nz)
+def end_drag(law: int, kn: float, kt: float, u: Vector, t: Vector, size: float) -> tuple[Vector, Matrix, Matrix]:
+    """Drag per length F, and D and S of a link of length `size` [m]."""
+    ut = dot(u, t)
+    n = minus(u, times(ut, t))
+    un = math.sqrt(dot(n, n))
     a, b, an, at, bn, bt = drag_law(law, kn, kt, un, ut)
     over = 1.0 / (un + _SMALL)
-    F = (-(a * nx + b * tx), -(a * ny + b * ty), -(a * nz + b * tz))
     # D = a (1 - t t') + (a_n/u_n) n n' + a_t n t' + (b_n/u_n) t n' + b_t t t'
-    px, py, pz = an * over * nx + (bn * over) * tx, an * over * ny + (bn * over) * ty, an * over * nz + (bn * over) * tz
-    along = bt - a
-    qx, qy, qz = at * nx + along * tx, at * ny + along * ty, at * nz + along * tz
-    D = (
-        a + px * nx + qx * tx,
-        px * ny + qx * ty,
-        px * nz + qx * tz,
-        py * nx + qy * tx,
-        a + py * ny + qy * ty,
-        py * nz + qy * tz,
-        pz * nx + qz * tx,
-        pz * ny + qz * ty,
-        a + pz * nz + qz * tz,
-    )
+    by_n, by_t = combined(an * over, n, bn * over, t), combined(at, n, bt - a, t)
+    D = with_diagonal(plus(outer(by_n, n), outer(by_t, t)), a)
     # S = -[(b - a u_t)(1 - t t') + ((b_t - a - b_n u_t/u_n) t + (a_t - a_n u_t/u_n) n) n'] / |r|
-    c = (a * ut - b) / size
-    d = -(bt - a - bn * ut * over) / size
-    e = -(at - an * ut * over) / size
-    sx, sy, sz = d * tx + e * nx, d * ty + e * ny, d * tz + e * nz
-    S = (
-        c * (1.0 - tx * tx) + sx * nx,
-        -c * tx * ty + sx * ny,
-        -c * tx * tz + sx * nz,
-        -c * ty * tx + sy * nx,
-        c * (1.0 - ty * ty) + sy * ny,
-        -c * ty * tz + sy * nz,
-        -c * tz * tx + sz * nx,
-        -c * tz * ty + sz * ny,
-        c * (1.0 - tz * tz) + sz * nz,
-    )
-    return F, D, S
+    shorter = 1.0 / size
+    c = (a * ut - b) * shorter
+    d = -(bt - a - bn * ut * over) * shorter
+    e = -(at - an * ut * over) * shorter
+    S = plus(across(c, t), outer(combined(d, t, e, n), n))
+    return combined(-a, n, -b, t), D, S
 
 
-@kernel
-def body_axes(surge: float, sway: float, tx: float, ty: float) -> tuple[float, float, float]:
-    """The horizontal tensor (xx, xy, yy) of a body with values along and across its heading.
+@inner_kernel
+def body_axes(surge: float, sway: float, heave: float, t: Vector) -> Matrix:
+    """The tensor of a body with values along and across its heading and upwards.
 
     It heads where its cable pulls it, the horizontal part of t; under a vertical cable it has no heading and both
     directions share the mean.
     """
-    flat = tx * tx + ty * ty
+    flat = t[0] * t[0]
+    if len(t) == 3:
+        flat += t[1] * t[1]
     share = (surge - sway) / (flat + _VERTICAL * _VERTICAL)
     mean = 0.5 * (surge + sway) - 0.5 * share * flat
-    return mean + share * tx * tx, share * tx * ty, mean + share * ty * ty
+    xx = mean + share * t[0] * t[0]
+    if len(t) == 2:
+        return xx, 0.0, 0.0, heave
+    xy = share * t[0] * t[1]
+    return xx, xy, 0.0, xy, mean + share * t[1] * t[1], 0.0, 0.0, 0.0, heave
 
 
 @inner_kernel
-def directions(part: Indices, parent: Indices, length: Floats, n: int, X: Floats, W: Floats) -> None:
+def directions(part: Indices, parent: Indices, length: Floats, n: int, X: Floats, W: Floats, axes: Axes) -> None:
     """Tangent and length of every link, and the tangents at a third of it from its lower and its upper end.
 
-    Into the columns TANGENT, SIZE, LOWER and UPPER of W; the fourth number of an end is the share of the link's own
+    Into the columns TANGENT, SIZE, LOWER and UPPER of W; the last number of an end is the share of the link's own
     tangent in it.
     """
+    col, d = columns_of(axes), len(axes)
     for i in range(n):
-        p = parent[i]
-        rx, ry, rz = X[i, 0] - X[p, 0], X[i, 1] - X[p, 1], X[i, 2] - X[p, 2]
-        size = math.sqrt(rx * rx + ry * ry + rz * rz) + _TINY
+        r = minus(vector(axes, X, i, 0), vector(axes, X, parent[i], 0))
+        size = math.sqrt(dot(r, r)) + _TINY
         W[i, col.SIZE] = size
-        W[i, col.TANGENT], W[i, col.TANGENT + 1], W[i, col.TANGENT + 2] = rx / size, ry / size, rz / size
+        put(W, i, col.TANGENT, times(1.0 / size, r))
+    above, over_above = False, 0.0
     for i in range(n):
-        below = i > 0 and part[i - 1] == part[i]
+        below, over_below = above, over_above
         above = i + 1 < n and part[i + 1] == part[i]
-        to_below = length[i] / (3.0 * (length[i] + length[i - 1])) if below else 0.0
-        to_above = length[i] / (3.0 * (length[i] + length[i + 1])) if above else 0.0
+        over_above = (1.0 / 3.0) / (length[i] + length[i + 1]) if above else 0.0
+        to_below, to_above = length[i] * over_below, length[i] * over_above
         for end in range(2):
             # Where a part ends the turn goes on as it does at the link's other end.
             lower = end == 0
@@ -175,15 +170,13 @@ def directions(part: Indices, parent: Indices, length: Floats, n: int, X: Floats
             else:
                 beside, share = i, 0.0
             own = 1.0 - share
-            x = own * W[i, col.TANGENT] + share * W[beside, col.TANGENT]
-            y = own * W[i, col.TANGENT + 1] + share * W[beside, col.TANGENT + 1]
-            z = own * W[i, col.TANGENT + 2] + share * W[beside, col.TANGENT + 2]
-            over = 1.0 / (math.sqrt(x * x + y * y + z * z) + _TINY)
+            t = combined(own, vector(axes, W, i, col.TANGENT), share, vector(axes, W, beside, col.TANGENT))
             at = col.LOWER if lower else col.UPPER
-            W[i, at], W[i, at + 1], W[i, at + 2], W[i, at + 3] = x * over, y * over, z * over, own
+            put(W, i, at, times(1.0 / (math.sqrt(dot(t, t)) + _TINY), t))
+            W[i, at + d] = own
 
 
-@inner_kernel
-def water_at(depths: Floats, x: Floats, y: Floats, near: float, far: float) -> tuple[float, float]:
+@inline_kernel
+def water_at(axes: Axes, depths: Floats, x: Floats, y: Floats, near: float, far: float) -> Vector:
     """The water's velocity [m/s] at a third of a link whose ends are at the heights `near` and `far` [m]."""
-    return current_at(depths, x, y, NEAR * near + FAR * far)
+    return current_at(axes, depths, x, y, NEAR * near + FAR * far)

@@ -8,14 +8,13 @@ that the error still falls at second order as links are added.
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from models.link_joint.chain import Layout, build
-from models.link_joint.steady import equilibrium
+from models.link_joint.plane import Plane
+from models.link_joint.steady import at_rest
+from models.link_joint.vectors import Floats
 from models.quantity import NumericalFailure
 from models.towed_system import TowedSystem
-
-Floats = NDArray[np.float64]
 
 #: Links of the first part that curvature is read from.
 _READ = 60
@@ -24,14 +23,17 @@ _STRAIGHT, _EVEN = 0.05, 1.0
 
 
 class Grading:
-    """The shape of the steady tow at one velocity [m/s], and chains of any number of links that follow it."""
+    """The shape of the steady tow at one velocity [m/s], and chains of any number of links that follow it.
 
-    def __init__(self, system: TowedSystem, velocity: tuple[float, float, float]) -> None:
+    The velocity and the current lie in the `plane`, where one is given.
+    """
+
+    def __init__(self, system: TowedSystem, velocity: tuple[float, float, float], plane: Plane | None) -> None:
         self._system = system
         self._shares: list[tuple[Floats, Floats]] = []
         even = build(system, _READ)
         try:
-            x, _, _ = equilibrium(even, velocity)
+            x, _, _ = at_rest(even, velocity, plane)
         except NumericalFailure:
             return
         self._shares = [_share(even, x, part) for part in range(len(even.links))]

@@ -10,18 +10,30 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from models.kernels import inner_kernel, kernel
-from models.link_joint import columns as col
 from models.link_joint.chain import Chain
+from models.link_joint.columns import Work, columns_of
+from models.link_joint.elimination import reduce, substitute
 from models.link_joint.energy import energy_of, power_of
 from models.link_joint.gauss import make_consistent
-from models.link_joint.stage import Work, reduce, solve_stage, substitute
+from models.link_joint.stage import solve_stage
 from models.link_joint.track import Track, first_row, hermite, note_slack, pull_on_ends, write_rows
+from models.link_joint.vectors import (
+    Axes,
+    Floats,
+    applied,
+    combined,
+    dot,
+    matrix,
+    minus,
+    nought,
+    plus,
+    put,
+    times,
+    vector,
+)
 from models.link_joint.winding import change_of_links, merge, split
-
-Floats = NDArray[np.float64]
 
 GAMMA = 2.0 - math.sqrt(2.0)
 _D = 0.5 * GAMMA
@@ -51,7 +63,7 @@ class Curve(NamedTuple):
 
 
 class State(NamedTuple):
-    """x, v, a (3, m + 1, 3) and T (3, m) at the begin, the middle point and the end of a step, changed in place."""
+    """x, v, a (3, m + 1, d) and T (3, m) at the begin, the middle point and the end of a step, changed in place."""
 
     x: Floats
     v: Floats
@@ -110,12 +122,13 @@ def curve_at(curve: Curve, t: float, at: int, value: Floats, rate: Floats, secon
 @inner_kernel
 def _ship_strays(ship: Curve, at: int, t: float, h: float, n: int, x: Floats, v: Floats) -> float:
     """How far the ship's motion inside a step is from the cubic through its ends, over the step [m/s]."""
-    p, rate, second = np.empty(3), np.empty(3), np.empty(3)
+    d = x.shape[2]
+    p, rate, second = np.empty(d), np.empty(d), np.empty(d)
     worst = 0.0
     for k in range(1, 6):
         s = k / 6.0
         at = curve_at(ship, t + s * h, at, p, rate, second)
-        for j in range(3):
+        for j in range(d):
             worst = max(worst, abs(p[j] - hermite(s, h, x[0, n, j], v[0, n, j], x[2, n, j], v[2, n, j])))
     return worst / h
 
@@ -123,21 +136,20 @@ def _ship_strays(ship: Curve, at: int, t: float, h: float, n: int, x: Floats, v:
 @inner_kernel
 def _local_error(c: Chain, n: int, h: float, s: State, w: Work, dV: Floats, dT: Floats) -> tuple[float, int]:
     """Error of a step [m/s] and the node it is largest at: the velocities' filtered, the positions' over the step."""
-    v, a, W, parent = s.v, s.a, w.W, c.parent
-    over = 1.0 / _D
+    v, W, axes, parent = s.v, w.W, w.axes, c.parent
+    a0, a1, a2 = s.a[0], s.a[1], s.a[2]
+    col = columns_of(axes)
     for i in range(n):
         W[i, col.RHO] = 0.0
-        for k in range(3):
-            total = 0.0
-            for j in range(3):
-                total += W[i, col.M + 3 * k + j] * (_E0 * a[0, i, j] + _E1 * a[1, i, j] + _E2 * a[2, i, j])
-            W[i, col.F + k], W[i, col.R + k] = total * over, 0.0
+        e = plus(combined(_E0, vector(axes, a0, i, 0), _E1, vector(axes, a1, i, 0)), times(_E2, vector(axes, a2, i, 0)))
+        put(W, i, col.F, times(1.0 / _D, applied(matrix(axes, W, i, col.M), e)))
+        put(W, i, col.R, nought(axes))
     for i in range(n):
-        reduce(i, parent[i], parent[i] == n, 0.0, W)
+        reduce(i, parent[i], parent[i] == n, 0.0, W, axes)
     substitute(c, n, w, dV, dT)
     worst, node = 0.0, 0
     for i in range(n):
-        for j in range(3):
+        for j in range(len(axes)):
             here = max(abs(dV[i, j]), abs(_E0 * v[0, i, j] + _E1 * v[1, i, j] + _E2 * v[2, i, j]))
             if not here <= worst:
                 worst, node = here, i
@@ -145,7 +157,7 @@ def _local_error(c: Chain, n: int, h: float, s: State, w: Work, dV: Floats, dT: 
 
 
 @inner_kernel
-def _set_stage(stage: int, n: int, h: float, s: State, jerk: Floats, xh: Floats, vh: Floats) -> None:
+def _set_stage(stage: int, n: int, h: float, s: State, jerk: Floats, xh: Floats, vh: Floats, axes: Axes) -> None:
     """What a stage starts from, and its guess of velocities and tensions."""
     x, v, a, T = s.x, s.v, s.a, s.T
     g = _D * h
@@ -154,7 +166,7 @@ def _set_stage(stage: int, n: int, h: float, s: State, jerk: Floats, xh: Floats,
             T[1, i] = T[0, i]
         else:
             T[2, i] = T[0, i] + (T[1, i] - T[0, i]) / GAMMA
-        for j in range(3):
+        for j in range(len(axes)):
             if stage == 1:
                 # The trapezoidal rule to t + gamma h.
                 xh[i, j] = x[0, i, j] + g * v[0, i, j]
@@ -183,8 +195,9 @@ def march(
     Ends with PAUSED where there is more to do than a call may; the same call with its outcome goes on.
     """
     n, m = so_far.nodes, s.x.shape[1]
-    xh, vh, dV, dT = np.zeros((m, 3)), np.zeros((m, 3)), np.zeros((m, 3)), np.zeros(m)
-    jerk = np.zeros((m, 3))
+    d = len(w.axes)
+    xh, vh, dV, dT = np.zeros((m, d)), np.zeros((m, d)), np.zeros((m, d)), np.zeros(m)
+    jerk = np.zeros((m, d))
     paid, rates, spare, top = np.zeros(1), np.zeros((3, 1)), np.zeros(1), np.zeros(3)
     x, v, a, T = s.x, s.v, s.a, s.T
     t, h, row, base, at, at_pay = so_far.t, so_far.h, so_far.row, so_far.base, 0, 0
@@ -193,13 +206,13 @@ def march(
     unexplained, snapped, turnover = so_far.unexplained, so_far.snapped, so_far.turnover
     floor, accuracy = PATIENCE * _stretch_time(c, n), 1e-2 * settings.tolerance
     if winding:
-        at_pay = curve_at(payout, t, 0, paid, rates[0], spare)
+        at_pay = curve_at(payout, t, at_pay, paid, rates[0], spare)
         w.reel[0] = rates[0, 0]
-    energy0 = energy_of(c, n, x[0], v[0], T[0])
+    energy0 = energy_of(c, n, x[0], v[0], T[0], w)
     power0, _ = power_of(c, n, x[0], v[0], a[0], T[0], w)
     if row == 0:
         base = c.length[n - 1] - paid[0]
-        pull_on_ends(c, n, track, 0, x[0], v[0], a[0], T[0], w.W)
+        pull_on_ends(c, n, track, track.pull[0], x[0], v[0], a[0], T[0], w)
         first_row(track, n, x[0], v[0])
         row = 1
     rigid = False
@@ -239,13 +252,13 @@ def march(
                 at_pay = curve_at(payout, to, at_pay, paid, rates[stage], spare)
                 top[stage] = base + paid[0]
                 c.length[n - 1], w.reel[0] = top[stage], rates[stage, 0]
-            _set_stage(stage, n, h, s, jerk, xh, vh)
+            _set_stage(stage, n, h, s, jerk, xh, vh, w.axes)
             used, link, quantity = solve_stage(c, n, g, xh, vh, x[stage], v[stage], T[stage], w, dV, dT, accuracy)
             if used < 0:
                 break
             iterations += used
             for i in range(n):
-                for j in range(3):
+                for j in range(d):
                     a[stage, i, j] = (v[stage, i, j] - vh[i, j]) / g
         if used < 0:
             rejected += 1
@@ -274,11 +287,11 @@ def march(
         if winding:
             c.length[n - 1], w.reel[0] = top[1], rates[1, 0]
         power_g, drag_g = power_of(c, n, x[1], v[1], a[1], T[1], w)
-        pull_on_ends(c, n, track, 1, x[1], v[1], a[1], T[1], w.W)
+        pull_on_ends(c, n, track, track.pull[1], x[1], v[1], a[1], T[1], w)
         if winding:
             c.length[n - 1], w.reel[0] = top[2], rates[2, 0]
         power1, drag1 = power_of(c, n, x[2], v[2], a[2], T[2], w)
-        energy1 = energy_of(c, n, x[2], v[2], T[2])
+        energy1 = energy_of(c, n, x[2], v[2], T[2], w)
         missing = energy1 - energy0 - h * (_B0 * power0 + _B1 * power_g + _B2 * power1)
         if loose:
             snapped += missing
@@ -286,8 +299,8 @@ def march(
             unexplained += missing
         turnover += h * (_B1 * (abs(power_g - drag_g) + abs(drag_g)) + (1.0 - _B1) * (abs(power1 - drag1) + abs(drag1)))
         energy0, power0 = energy1, power1
-        drift = max(drift, _drift(c, n, x[2], v[2], T[2], w.reel[0]))
-        pull_on_ends(c, n, track, 2, x[2], v[2], a[2], T[2], w.W)
+        drift = max(drift, _drift(c, n, x[2], v[2], T[2], w))
+        pull_on_ends(c, n, track, track.pull[2], x[2], v[2], a[2], T[2], w)
         if not note_slack(c, n, track, t + h, T):
             code = EVENTS_FULL
             break
@@ -296,7 +309,7 @@ def march(
             for j in range(2):
                 track.pull[0, part, j] = track.pull[2, part, j]
         for i in range(n + 1):
-            for j in range(3):
+            for j in range(d):
                 jerk[i, j] = (a[2, i, j] - a[0, i, j]) / h if rigid else (a[2, i, j] - a[1, i, j]) / ((1.0 - GAMMA) * h)
                 x[0, i, j], v[0, i, j], a[0, i, j] = x[2, i, j], v[2, i, j], a[2, i, j]
         for i in range(n):
@@ -306,13 +319,13 @@ def march(
         changed = change_of_links(c, n, m, settings.nominal) if winding else 0
         if changed != 0:
             if changed > 0:
-                split(c, n, x[0], v[0], a[0], T[0], settings.nominal, w.reel[0])
+                split(c, n, x[0], v[0], a[0], T[0], settings.nominal, w.reel[0], w.axes)
             else:
-                merge(c, n, x[0], v[0], a[0], T[0], w.reel[0])
+                merge(c, n, x[0], v[0], a[0], T[0], w.reel[0], w.axes)
             n += changed
             jerk[:] = 0.0
             base = c.length[n - 1] - paid[0]
-            energy0 = energy_of(c, n, x[0], v[0], T[0])
+            energy0 = energy_of(c, n, x[0], v[0], T[0], w)
             power0, _ = power_of(c, n, x[0], v[0], a[0], T[0], w)
         if not fixed:
             h = min(LONGEST, max(floor, h * min(3.0, 0.9 * (error + 1e-12) ** (-1.0 / 3.0))))
@@ -322,24 +335,23 @@ def march(
 
 
 @inner_kernel
-def _drift(c: Chain, n: int, X: Floats, V: Floats, T: Floats, reel: float) -> float:
+def _drift(c: Chain, n: int, X: Floats, V: Floats, T: Floats, w: Work) -> float:
     """Largest closure error of a taut link over its length."""
-    worst = 0.0
+    worst, axes = 0.0, w.axes
+    up = len(axes) - 1
     for i in range(n):
         if T[i] <= 0.0:
             continue
         p = c.parent[i]
-        rx, ry, rz = X[i, 0] - X[p, 0], X[i, 1] - X[p, 1], X[i, 2] - X[p, 2]
-        size = math.sqrt(rx * rx + ry * ry + rz * rz)
-        wanted = 1.0
+        r = minus(vector(axes, X, i, 0), vector(axes, X, p, 0))
+        size, wanted = math.sqrt(dot(r, r)), 1.0
         if c.compliance[i] > 0.0:
-            depth = -0.5 * (X[i, 2] + X[p, 2])
+            depth = -0.5 * (X[i, up] + X[p, up])
             pressure = (1.0 - 2.0 * c.poisson[i]) * c.specific_weight * depth * c.area[i]
             wanted += c.compliance[i] * (T[i] - pressure)
             if c.damping[i] > 0.0:
-                dx, dy, dz = V[i, 0] - V[p, 0], V[i, 1] - V[p, 1], V[i, 2] - V[p, 2]
-                rate = (rx * dx + ry * dy + rz * dz) / size - (reel if p == n else 0.0)
-                wanted -= c.damping[i] * rate / c.length[i]
+                rate = dot(r, minus(vector(axes, V, i, 0), vector(axes, V, p, 0))) / size
+                wanted -= c.damping[i] * (rate - (w.reel[0] if p == n else 0.0)) / c.length[i]
         worst = max(worst, abs(size / c.length[i] - wanted))
     return worst
 

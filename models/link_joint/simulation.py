@@ -5,21 +5,21 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from models.link_joint import march as kernel
-from models.link_joint.chain import FEWEST_LINKS, Layout, with_room
+from models.link_joint.chain import FEWEST_LINKS, Layout, current_of, with_room
+from models.link_joint.columns import work_for
 from models.link_joint.gauss import accelerations
 from models.link_joint.grading import Grading
-from models.link_joint.stage import work_for
-from models.link_joint.steady import equilibrium
+from models.link_joint.plane import Plane, plane_of
+from models.link_joint.steady import at_rest
 from models.link_joint.track import Track
+from models.link_joint.vectors import Floats
 from models.payout import Payout, rounded
 from models.quantity import InvalidInput, NumericalFailure
 from models.towed_system import VEHICLE_PART, TowedSystem
 from models.trace import Trace
 
-Floats = NDArray[np.float64]
 Start = Literal["rest", "steady"]
 
 #: Links of the first part that an unasked resolution starts from, and where its search ends.
@@ -114,6 +114,7 @@ def simulate(
     payout: Payout | None = None,
     shapes_at: Floats | None = None,
     companion: bool = True,
+    planar: bool = True,
 ) -> LinkJointResult:
     """Simulate the chain under the ship's motion.
 
@@ -136,6 +137,8 @@ def simulate(
         Times [s], each the ship's sample next to it, of which the whole chain is kept.
     companion
         Whether to estimate the error by a second, coarser run.
+    planar
+        Whether a scene that lies in one vertical plane does without the axis across it. The result is the same.
 
     Raises
     ------
@@ -146,11 +149,13 @@ def simulate(
         and quantity. With `links` left out also when the tolerance is not met.
     """
     _check(system, ship, links, tolerance, step, payout)
-    grading = Grading(system, _usual_velocity(system, ship))
+    rest = (system.speed if start == "rest" else 0.0, 0.0, 0.0)
+    plane = plane_of(current_of(system)[1], rest, ship) if planar else None
+    grading = Grading(system, _usual_velocity(system, ship), plane)
     snapshots = np.zeros(0) if shapes_at is None else np.asarray(shapes_at, dtype=float)
 
     def run(count: int, local: float, dt: float | None) -> LinkJointResult:
-        return _run(system, grading.build(count), ship, local, dt, start, payout, snapshots)
+        return _run(system, grading.build(count), ship, local, dt, start, payout, snapshots, plane)
 
     if links is not None:
         fine = run(links, tolerance, step)
@@ -198,10 +203,16 @@ def _run(
     start: Start,
     payout: Payout | None,
     snapshots: Floats,
+    plane: Plane | None,
 ) -> LinkJointResult:
-    n, chain = layout.count, layout.chain
+    n, chain = layout.count, layout.chain if plane is None else plane.chain(layout.chain)
     nominal = float(chain.length[n - 1])
-    curve = kernel.Curve(np.ascontiguousarray(ship.spline.x), np.ascontiguousarray(ship.spline.c))
+
+    def moving(vectors: Floats) -> Floats:
+        """Along the axes that the chain moves in."""
+        return np.ascontiguousarray(vectors if plane is None else plane.along(vectors))
+
+    curve = kernel.Curve(np.ascontiguousarray(ship.spline.x), moving(ship.spline.c))
     first_velocity = ship.spline(ship.t[0], 1)
     velocity = (system.speed, 0.0, 0.0) if start == "rest" else (*first_velocity[:2].tolist(), 0.0)
     winding = kernel.Curve(np.zeros(0), np.zeros((4, 0, 1)))
@@ -211,15 +222,15 @@ def _run(
         winding = kernel.Curve(np.ascontiguousarray(spline.x), np.ascontiguousarray(spline.c))
         extra = max(0, math.ceil(float(payout.length.max() - payout.length[0]) / nominal)) + 2
     try:
-        x, T, _ = equilibrium(layout, velocity)
+        x, T, _ = at_rest(layout, velocity, plane)
     except NumericalFailure as failure:
         raise NumericalFailure(f"At the start: {failure}") from failure
-    x += ship.at(ship.t[:1])[0]
-    v = np.tile(velocity, (n + 1, 1))
-    v[n] = first_velocity
-    a, T = accelerations(chain, x, v, T, np.asarray(ship.spline(ship.t[0], 2)))
+    x += moving(ship.position[0])
+    v = np.tile(moving(np.array(velocity)), (n + 1, 1))
+    v[n] = moving(first_velocity)
+    a, T = accelerations(chain, x, v, T, moving(np.asarray(ship.spline(ship.t[0], 2))))
     chain = with_room(chain, extra, nominal)
-    nodes = n + 1 + extra
+    nodes, d = n + 1 + extra, x.shape[1]
 
     def room(values: Floats) -> Floats:
         held = np.zeros((3, nodes, *values.shape[1:]))
@@ -236,11 +247,11 @@ def _run(
         t=np.array(ship.t),
         ends=np.array(layout.lower_end),
         tops=tops,
-        x=np.zeros((len(ship), parts, 3)),
-        v=np.zeros((len(ship), parts, 3)),
+        x=np.zeros((len(ship), parts, d)),
+        v=np.zeros((len(ship), parts, d)),
         T=np.zeros((len(ship), parts, 2)),
         row_of_shape=rows,
-        shapes=np.zeros((kept.size, nodes, 3)),
+        shapes=np.zeros((kept.size, nodes, d)),
         nodes=np.zeros(kept.size, np.int64),
         T_max=np.zeros(parts),
         events=np.zeros((MOST_EVENTS, 5)),
@@ -258,7 +269,7 @@ def _run(
         at_a_time=max(LEAST_STEPS, AT_A_TIME // n),
         nominal=nominal,
     )
-    out, work = kernel.begin(n, settings, float(ship.t[0])), work_for(nodes)
+    out, work = kernel.begin(n, settings, float(ship.t[0])), work_for(nodes, d)
     while out.code == kernel.PAUSED:
         out = kernel.march(chain, curve, winding, state, settings, track, work, out)
     # Impacts of slack links may swallow energy, never make it.
@@ -266,8 +277,12 @@ def _run(
     scale = max(out.turnover, _JUDGED * hung, 1e-9)
     imbalance = (abs(out.unexplained) + max(0.0, out.snapped)) / scale
     _judge(out, imbalance, layout, system)
+    places, rates, shapes = track.x, track.v, track.shapes
+    if plane is not None:
+        places, shapes = plane.places_in_space(places), plane.places_in_space(shapes)
+        rates = plane.in_space(rates)
     bodies = tuple(
-        Trace(t=ship.t, position=track.x[:, k], velocity=track.v[:, k], tension=track.T[:, k]) for k in range(parts)
+        Trace(t=ship.t, position=places[:, k], velocity=rates[:, k], tension=track.T[:, k]) for k in range(parts)
     )
     names = tuple(part.name for part in system.parts)
     return LinkJointResult(
@@ -288,17 +303,22 @@ def _run(
         ),
         tension_max=track.T_max,
         shape_times=ship.t[kept],
-        shapes=tuple(shape[: count + 1].copy() for shape, count in zip(track.shapes, track.nodes, strict=True)),
+        shapes=tuple(shape[: count + 1].copy() for shape, count in zip(shapes, track.nodes, strict=True)),
         layout=layout,
     )
 
 
 def _usual_velocity(system: TowedSystem, ship: Trace) -> tuple[float, float, float]:
-    """The ship's root mean square speed through the water at the surface, in the direction it starts in [m/s]."""
+    """The ship's root mean square speed through the water at the surface, in the direction it starts in [m/s].
+
+    A ship that starts at rest has the direction of its greatest speed.
+    """
     water = np.zeros(2) if system.current is None else system.current.velocity_at(0.0)
     rates = ship.spline(ship.t, 1)[:, :2] - water
-    speed, size = float(np.sqrt(np.mean(np.sum(rates**2, axis=1)))), float(np.hypot(*rates[0]))
-    x, y = water + (rates[0] * (speed / size) if size > 1e-6 else np.array([speed, 0.0]))
+    speeds = np.hypot(rates[:, 0], rates[:, 1])
+    first = 0 if speeds[0] > 1e-6 else int(speeds.argmax())
+    way = rates[first] / speeds[first] if speeds[first] > 0.0 else np.array([1.0, 0.0])
+    x, y = water + float(np.sqrt(np.mean(speeds**2))) * way
     return float(x), float(y), 0.0
 
 

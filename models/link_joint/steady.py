@@ -8,17 +8,31 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from models.kernels import kernel
-from models.link_joint import columns as col
-from models.link_joint.chain import Chain, Layout, build
+from models.link_joint.chain import Chain, Layout, build, current_of
+from models.link_joint.columns import Work, columns_of, work_for
 from models.link_joint.forces import current_at, end_force
-from models.link_joint.stage import Work, assemble, solve_stage, work_for
+from models.link_joint.plane import Plane, plane_of
+from models.link_joint.stage import assemble, solve_stage
+from models.link_joint.vectors import (
+    Axes,
+    Floats,
+    Vector,
+    add,
+    axes_of,
+    combined,
+    dot,
+    minus,
+    nought,
+    plus,
+    put,
+    raised,
+    times,
+    vector,
+)
 from models.quantity import NumericalFailure
 from models.towed_system import TowedSystem
-
-Floats = NDArray[np.float64]
 
 #: Force out of balance, over the largest tension, that an equilibrium may keep.
 _BALANCED = 1e-9
@@ -67,7 +81,7 @@ def steady_tow(
     from models.link_joint.grading import Grading
 
     if anchor is None:
-        layout = Grading(system, velocity).build(links)
+        layout = Grading(system, velocity, plane_of(current_of(system)[1], velocity)).build(links)
         x, T, residual = equilibrium(layout, velocity)
     else:
         layout = build(system, links)
@@ -89,8 +103,20 @@ def equilibrium(layout: Layout, velocity: tuple[float, float, float]) -> tuple[F
     NumericalFailure
         The chain does not come to rest in the frame of the tow.
     """
-    x, T = trailing(layout.chain, layout.count, velocity)
-    residual = settle(layout.chain, layout.count, x, np.tile(np.asarray(velocity, dtype=float), (x.shape[0], 1)), T)
+    chain = layout.chain
+    plane = plane_of(np.column_stack([chain.current_x, chain.current_y]), velocity)
+    x, T, residual = at_rest(layout, velocity, plane)
+    return x if plane is None else plane.in_space(x), T, residual
+
+
+def at_rest(layout: Layout, velocity: tuple[float, float, float], plane: Plane | None) -> tuple[Floats, Floats, float]:
+    """The same along the axes of a plane, (m + 1, 2), or of space."""
+    chain, n = layout.chain if plane is None else plane.chain(layout.chain), layout.count
+    towed = np.array(velocity) if plane is None else plane.along(np.array(velocity))
+    d = towed.size
+    x, T = np.zeros((n + 1, d)), np.zeros(n)
+    _trail(chain, n, tuple(towed.tolist()), x, T, axes_of(d))
+    residual = settle(chain, n, x, np.tile(towed, (n + 1, 1)), T)
     return x, T, residual
 
 
@@ -105,56 +131,46 @@ def _hung_between(layout: Layout, anchor: Floats) -> Floats:
     return x
 
 
-def trailing(chain: Chain, n: int, velocity: tuple[float, float, float]) -> tuple[Floats, Floats]:
-    """Positions and tensions where the search for a steady tow starts, (n + 1, 3) [m] and (n,) [N].
+@kernel
+def _trail(c: Chain, n: int, velocity: Vector, x: Floats, T: Floats, axes: Axes) -> None:
+    """Positions (n + 1, d) [m] and tensions (n,) [N] where the search for a steady tow starts.
 
     From the free ends up each link points where the load below it and half its own pull it; the current is taken as if
     the chain hung straight down.
     """
-    x, T = np.zeros((n + 1, 3)), np.zeros(n)
-    _trail(chain, n, *velocity, x, T)
-    return x, T
-
-
-@kernel
-def _trail(c: Chain, n: int, vx: float, vy: float, vz: float, x: Floats, T: Floats) -> None:
-    pull, towards, own = np.zeros((n + 1, 3)), np.zeros((n, 3)), np.zeros(3)
+    d = len(axes)
+    pull, towards = np.zeros((n + 1, d)), np.zeros((n, d))
     for j in range(n):
         i = n - 1 - j
-        x[i, 2] = x[c.parent[i], 2] - c.length[i]
+        x[i, d - 1] = x[c.parent[i], d - 1] - c.length[i]
     for i in range(n):
-        p, half = c.parent[i], 0.5 * c.length[i]
-        cx, cy = current_at(c.current_depth, c.current_x, c.current_y, x[i, 2])
-        ux, uy, uz = vx - cx, vy - cy, vz
+        half = 0.5 * c.length[i]
+        u = minus(velocity, current_at(axes, c.current_depth, c.current_x, c.current_y, x[i, d - 1]))
+        below = vector(axes, pull, i, 0)
         if c.has_body[i]:
-            speed = math.sqrt(ux * ux + uy * uy + uz * uz)
-            pull[i, 0] -= c.body_drag[i, 0] * speed * ux
-            pull[i, 1] -= c.body_drag[i, 1] * speed * uy
-            pull[i, 2] -= c.body_drag[i, 2] * speed * uz + c.body_weight[i]
-        tx, ty, tz = pull[i, 0], pull[i, 1], pull[i, 2]
-        size = math.sqrt(tx * tx + ty * ty + tz * tz)
-        if size > 0.0:
-            tx, ty, tz = tx / size, ty / size, tz / size
-        else:
-            # A free end has nothing but its own load to go by.
-            tx, ty, tz = 0.0, 0.0, -1.0
+            speed = math.sqrt(dot(u, u))
+            for k in range(d):
+                # The body heads into the flow; upwards is the last axis.
+                pull[i, k] -= c.body_drag[i, 2 if k == d - 1 else 0] * speed * u[k]
+            pull[i, d - 1] -= c.body_weight[i]
+            below = vector(axes, pull, i, 0)
+        size = math.sqrt(dot(below, below))
+        # A free end has nothing but its own load to go by.
+        t = times(1.0 / size, below) if size > 0.0 else raised(nought(axes), -1.0)
+        own = nought(axes)
         for _ in range(_TURNS):
-            fx, fy, fz = end_force(c.law, c.normal_drag[i], c.tangential_drag[i], ux, uy, uz, tx, ty, tz)
-            own[0], own[1], own[2] = half * fx, half * fy, half * (fz - c.weight[i])
-            wx, wy, wz = pull[i, 0] + own[0], pull[i, 1] + own[1], pull[i, 2] + own[2]
-            T[i] = math.sqrt(wx * wx + wy * wy + wz * wz)
-            over = 1.0 / (T[i] + 1e-300)
-            tx, ty, tz = tx + wx * over, ty + wy * over, tz + wz * over
-            over = 1.0 / (math.sqrt(tx * tx + ty * ty + tz * tz) + 1e-300)
-            tx, ty, tz = tx * over, ty * over, tz * over
-        towards[i, 0], towards[i, 1], towards[i, 2] = tx, ty, tz
-        for k in range(3):
-            pull[p, k] += pull[i, k] + 2.0 * own[k]
+            drag = end_force(c.law, c.normal_drag[i], c.tangential_drag[i], u, t)
+            own = times(half, raised(drag, -c.weight[i]))
+            whole = plus(below, own)
+            T[i] = math.sqrt(dot(whole, whole))
+            t = plus(t, times(1.0 / (T[i] + 1e-300), whole))
+            t = times(1.0 / (math.sqrt(dot(t, t)) + 1e-300), t)
+        put(towards, i, 0, t)
+        add(pull, axes, c.parent[i], 0, combined(1.0, below, 2.0, own))
     for j in range(n):
         i = n - 1 - j
         stretched = c.length[i] * (1.0 + c.compliance[i] * T[i])
-        for k in range(3):
-            x[i, k] = x[c.parent[i], k] + stretched * towards[i, k]
+        put(x, i, 0, combined(1.0, vector(axes, x, c.parent[i], 0), stretched, vector(axes, towards, i, 0)))
 
 
 def settle(chain: Chain, n: int, x: Floats, v: Floats, T: Floats) -> float:
@@ -168,7 +184,7 @@ def settle(chain: Chain, n: int, x: Floats, v: Floats, T: Floats) -> float:
         The steps do not come to rest; says the node and what is out of balance.
     """
     place = x.copy()
-    residual, node, rounds = _settle(chain, n, x, v, T, work_for(n + 1), _ROUNDS)
+    residual, node, rounds = _settle(chain, n, x, v, T, work_for(n + 1, x.shape[1]), _ROUNDS)
     if not residual <= _BALANCED:
         raise NumericalFailure(
             f"The chain of {n} links finds no steady shape: after {rounds} rounds node {node} is out of balance by "
@@ -181,17 +197,19 @@ def settle(chain: Chain, n: int, x: Floats, v: Floats, T: Floats) -> float:
 @kernel
 def _settle(c: Chain, n: int, x: Floats, v: Floats, T: Floats, w: Work, rounds: int) -> tuple[float, int, int]:
     m = n + 1
-    xh, X, V, dV = np.zeros((m, 3)), np.zeros((m, 3)), np.zeros((m, 3)), np.zeros((m, 3))
+    axes = w.axes
+    col, d = columns_of(axes), len(axes)
+    xh, X, V, dV = np.zeros((m, d)), np.zeros((m, d)), np.zeros((m, d)), np.zeros((m, d))
     now, dT = np.zeros(n), np.zeros(n)
     g = 10.0
     residual, node = np.inf, 0
     for done in range(1, rounds + 1):
         for i in range(n):
             now[i] = T[i]
-            for j in range(3):
+            for j in range(d):
                 xh[i, j] = x[i, j] - g * v[i, j]
                 V[i, j] = v[i, j]
-        for j in range(3):
+        for j in range(d):
             X[n, j], V[n, j] = x[n, j], v[n, j]
         used, _, _ = solve_stage(c, n, g, xh, v, X, V, now, w, dV, dT, 1e-13)
         if used < 0:
@@ -201,7 +219,7 @@ def _settle(c: Chain, n: int, x: Floats, v: Floats, T: Floats, w: Work, rounds: 
             continue
         moved = 0.0
         for i in range(n):
-            for j in range(3):
+            for j in range(d):
                 moved = max(moved, abs(X[i, j] - x[i, j]))
                 x[i, j] = X[i, j]
             T[i] = now[i]
@@ -212,7 +230,7 @@ def _settle(c: Chain, n: int, x: Floats, v: Floats, T: Floats, w: Work, rounds: 
                 largest = max(largest, T[i])
                 if c.held[i]:
                     continue
-                for j in range(3):
+                for j in range(d):
                     if abs(w.W[i, col.F + j]) > residual:
                         residual, node = abs(w.W[i, col.F + j]), i
             residual /= largest

@@ -7,11 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.kernels import inner_kernel
-from models.link_joint import columns as col
 from models.link_joint.chain import Chain
-from models.link_joint.forces import FAR, NEAR, directions, end_force, water_at
-
-Floats = NDArray[np.float64]
+from models.link_joint.columns import Work, columns_of
+from models.link_joint.forces import FAR, NEAR, end_force, water_at
+from models.link_joint.vectors import Floats, combined, dot, minus, plus, raised, times, vector
 
 #: Time after the cable is taut again in which its largest tension counts as the snap's [s].
 SNAP = 10.0
@@ -25,11 +24,11 @@ class Track(NamedTuple):
     t: Floats
     ends: NDArray[np.int64]  # (parts,)
     tops: NDArray[np.int64]  # (parts,) link; the first part's follows the payout
-    x: Floats  # (k, parts, 3)
+    x: Floats  # (k, parts, d), along the axes that the chain moves in
     v: Floats
     T: Floats  # (k, parts, 2)
     row_of_shape: NDArray[np.int64]  # (k,) row of `shapes`, -1 where none is kept
-    shapes: Floats  # (rows, m + 1, 3), the ship's node in its own row of use
+    shapes: Floats  # (rows, m + 1, d), the ship's node in its own row of use
     nodes: NDArray[np.int64]  # (rows,) moving nodes of each shape
     T_max: Floats  # (parts,)
     events: Floats  # (most, 5) part, begin, end, metres from the upper end, peak
@@ -49,51 +48,47 @@ def hermite(s: float, h: float, x0: float, v0: float, x1: float, v1: float) -> f
 
 
 @inner_kernel
-def _end_tension(c: Chain, n: int, i: int, end: int, X: Floats, V: Floats, A: Floats, T: Floats, W: Floats) -> float:
+def _end_tension(c: Chain, n: int, i: int, end: int, X: Floats, V: Floats, A: Floats, T: Floats, w: Work) -> float:
     """Pull of the cable on what holds its lower (0) or upper (1) end [N]: the link's, and its half link's load.
 
-    W holds the links' tangents; the ship's motion stands in the last row of V and A.
+    The ship's motion stands in the last row of V and A.
     """
     if T[i] <= 0.0:
         return 0.0
+    W, axes = w.W, w.axes
+    col, up = columns_of(axes), len(axes) - 1
     p = c.parent[i]
     q, o = (i, p) if end == 0 else (p, i)
     half = 0.5 * c.length[i]
-    at = col.UPPER if end == 1 else col.LOWER
-    cx, cy = water_at(c.current_depth, c.current_x, c.current_y, X[q, 2], X[o, 2])
-    ux = NEAR * V[q, 0] + FAR * V[o, 0] - cx
-    uy = NEAR * V[q, 1] + FAR * V[o, 1] - cy
-    uz = NEAR * V[q, 2] + FAR * V[o, 2]
+    water = water_at(axes, c.current_depth, c.current_x, c.current_y, X[q, up], X[o, up])
+    u = minus(combined(NEAR, vector(axes, V, q, 0), FAR, vector(axes, V, o, 0)), water)
     kn, kt = c.normal_drag[i] * half, c.tangential_drag[i] * half
-    fx, fy, fz = end_force(c.law, kn, kt, ux, uy, uz, W[i, at], W[i, at + 1], W[i, at + 2])
-    tx, ty, tz = W[i, col.TANGENT], W[i, col.TANGENT + 1], W[i, col.TANGENT + 2]
-    along = A[q, 0] * tx + A[q, 1] * ty + A[q, 2] * tz
+    drag = end_force(c.law, kn, kt, u, vector(axes, W, i, col.UPPER if end == 1 else col.LOWER))
+    t, a = vector(axes, W, i, col.TANGENT), vector(axes, A, q, 0)
     m, ma = c.mass[i] * half, c.added_mass[i] * half
-    pull = T[i] if end == 1 else -T[i]
-    px = pull * tx + fx - m * A[q, 0] - ma * (A[q, 0] - along * tx)
-    py = pull * ty + fy - m * A[q, 1] - ma * (A[q, 1] - along * ty)
-    pz = pull * tz + fz - m * A[q, 2] - ma * (A[q, 2] - along * tz) - c.weight[i] * half
-    return math.sqrt(px * px + py * py + pz * pz)
+    inertia = minus(times(m + ma, a), times(ma * dot(a, t), t))
+    pull = minus(plus(times(T[i] if end == 1 else -T[i], t), drag), raised(inertia, c.weight[i] * half))
+    return math.sqrt(dot(pull, pull))
 
 
 @inner_kernel
 def pull_on_ends(
-    c: Chain, n: int, track: Track, point: int, X: Floats, V: Floats, A: Floats, T: Floats, W: Floats
+    c: Chain, n: int, track: Track, pull: Floats, X: Floats, V: Floats, A: Floats, T: Floats, w: Work
 ) -> None:
-    """Pull at both ends of every part [N], at one point of a step; W is the work array."""
-    directions(c.part, c.parent, c.length, n, X, W)
+    """Pull (parts, 2) at both ends of every part [N], at one point of a step, of which W holds the links' tangents."""
     for part in range(track.ends.size):
         top = n - 1 if part == 0 else track.tops[part]
-        track.pull[point, part, 0] = _end_tension(c, n, top, 1, X, V, A, T, W)
-        track.pull[point, part, 1] = _end_tension(c, n, track.ends[part], 0, X, V, A, T, W)
+        for end in range(2):
+            pull[part, 1 - end] = _end_tension(c, n, top if end == 1 else track.ends[part], end, X, V, A, T, w)
 
 
 @inner_kernel
 def first_row(track: Track, n: int, x: Floats, v: Floats) -> None:
     """The state at the first output time."""
+    d = track.x.shape[2]
     for part in range(track.ends.size):
         i = track.ends[part]
-        for j in range(3):
+        for j in range(d):
             track.x[0, part, j], track.v[0, part, j] = x[i, j], v[i, j]
         for j in range(2):
             track.T[0, part, j] = track.pull[0, part, j]
@@ -101,16 +96,17 @@ def first_row(track: Track, n: int, x: Floats, v: Floats) -> None:
     if k >= 0:
         track.nodes[k] = n
         for i in range(n + 1):
-            for j in range(3):
+            for j in range(d):
                 track.shapes[k, i, j] = x[i, j]
 
 
 @inner_kernel
 def write_rows(track: Track, row: int, n: int, t: float, h: float, gamma: float, x: Floats, v: Floats) -> int:
-    """The output times inside a step from t, with x and v (3, m + 1, 3) at its three points; returns the next row.
+    """The output times inside a step from t, with x and v (3, m + 1, d) at its three points; returns the next row.
 
     Positions by the cubic through both ends, velocities and tensions by the parabola through the three points.
     """
+    d = track.x.shape[2]
     while row < track.t.size and track.t[row] <= t + h * (1.0 + 1e-12) + 1e-12:
         s = min(1.0, (track.t[row] - t) / h)
         l0 = (s - gamma) * (s - 1.0) / gamma
@@ -118,7 +114,7 @@ def write_rows(track: Track, row: int, n: int, t: float, h: float, gamma: float,
         l2 = s * (s - gamma) / (1.0 - gamma)
         for part in range(track.ends.size):
             i = track.ends[part]
-            for j in range(3):
+            for j in range(d):
                 track.x[row, part, j] = hermite(s, h, x[0, i, j], v[0, i, j], x[2, i, j], v[2, i, j])
                 track.v[row, part, j] = l0 * v[0, i, j] + l1 * v[1, i, j] + l2 * v[2, i, j]
             for j in range(2):
@@ -128,7 +124,7 @@ def write_rows(track: Track, row: int, n: int, t: float, h: float, gamma: float,
         if k >= 0:
             track.nodes[k] = n
             for i in range(n + 1):
-                for j in range(3):
+                for j in range(d):
                     track.shapes[k, i, j] = hermite(s, h, x[0, i, j], v[0, i, j], x[2, i, j], v[2, i, j])
         row += 1
     return row

@@ -2,14 +2,10 @@
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
 from models.kernels import inner_kernel
 from models.link_joint.chain import Chain
 from models.link_joint.forces import current_at, end_force
-
-Floats = NDArray[np.float64]
+from models.link_joint.vectors import Axes, Floats, add, combined, dot, minus, put, raised, times, vector
 
 
 @inner_kernel
@@ -23,62 +19,59 @@ def change_of_links(c: Chain, n: int, room: int, nominal: float) -> int:
 
 
 @inner_kernel
-def _fitted(c: Chain, i: int, p: int, x: Floats, v: Floats, tension: float, reel: float) -> float:
+def _fitted(c: Chain, i: int, p: int, x: Floats, v: Floats, tension: float, reel: float, axes: Axes) -> float:
     """Unstretched length of a link that has the given tension where it is, so that the cable feels no jump [m]."""
-    rx, ry, rz = x[i, 0] - x[p, 0], x[i, 1] - x[p, 1], x[i, 2] - x[p, 2]
-    size = math.sqrt(rx * rx + ry * ry + rz * rz)
-    dx, dy, dz = v[i, 0] - v[p, 0], v[i, 1] - v[p, 1], v[i, 2] - v[p, 2]
-    depth = -0.5 * (x[i, 2] + x[p, 2])
+    up = len(axes) - 1
+    r, change = minus(vector(axes, x, i, 0), vector(axes, x, p, 0)), minus(vector(axes, v, i, 0), vector(axes, v, p, 0))
+    size = math.sqrt(dot(r, r))
+    depth = -0.5 * (x[i, up] + x[p, up])
     pressure = (1.0 - 2.0 * c.poisson[i]) * c.specific_weight * depth * c.area[i]
-    rate = (rx * dx + ry * dy + rz * dz) / size - reel
+    rate = dot(r, change) / size - reel
     length: float = (size + c.damping[i] * rate) / (1.0 + c.compliance[i] * (tension - pressure))
     return length
 
 
 @inner_kernel
-def split(c: Chain, n: int, x: Floats, v: Floats, a: Floats, T: Floats, nominal: float, reel: float) -> None:
+def split(
+    c: Chain, n: int, x: Floats, v: Floats, a: Floats, T: Floats, nominal: float, reel: float, axes: Axes
+) -> None:
     """Part the top link: a new node n between node n - 1 and the ship, which moves to row n + 1.
 
     It is placed off the straight line by the sag of its own load, so that the new links pull as the old one did.
     """
     share = nominal / c.length[n - 1]
-    tx, ty, tz = x[n - 1, 0] - x[n, 0], x[n - 1, 1] - x[n, 1], x[n - 1, 2] - x[n, 2]
-    size = math.sqrt(tx * tx + ty * ty + tz * tz)
-    tx, ty, tz = tx / size, ty / size, tz / size
+    r = minus(vector(axes, x, n - 1, 0), vector(axes, x, n, 0))
+    t = times(1.0 / math.sqrt(dot(r, r)), r)
     lower, upper = nominal, c.length[n - 1] - nominal
-    load, t = np.zeros(3), (tx, ty, tz)
-    for j in range(3):
-        x[n + 1, j], v[n + 1, j], a[n + 1, j] = x[n, j], v[n, j], a[n, j]
-        x[n, j] = x[n - 1, j] + share * (x[n, j] - x[n - 1, j])
-        # At the ship the cable itself moves on with the rate it is paid out at.
-        v[n, j] = v[n - 1, j] + share * (v[n, j] + reel * t[j] - v[n - 1, j])
-        a[n, j] = a[n - 1, j] + share * (a[n, j] - a[n - 1, j])
-    cx, cy = current_at(c.current_depth, c.current_x, c.current_y, x[n, 2])
+    for of in (x, v, a):
+        put(of, n + 1, 0, vector(axes, of, n, 0))
+    # At the ship the cable itself moves on with the rate it is paid out at.
+    add(v, axes, n, 0, times(reel, t))
+    for of in (x, v, a):
+        put(of, n, 0, combined(share, vector(axes, of, n, 0), 1.0 - share, vector(axes, of, n - 1, 0)))
+    water = current_at(axes, c.current_depth, c.current_x, c.current_y, x[n, len(axes) - 1])
     kn, kt = c.normal_drag[n - 1], c.tangential_drag[n - 1]
-    fx, fy, fz = end_force(c.law, kn, kt, v[n, 0] - cx, v[n, 1] - cy, v[n, 2], tx, ty, tz)
-    load[0] = fx - c.mass[n - 1] * a[n, 0]
-    load[1] = fy - c.mass[n - 1] * a[n, 1]
-    load[2] = fz - c.mass[n - 1] * a[n, 2] - c.weight[n - 1]
-    along = load[0] * tx + load[1] * ty + load[2] * tz
+    drag = end_force(c.law, kn, kt, minus(vector(axes, v, n, 0), water), t)
+    load = raised(minus(drag, times(c.mass[n - 1], vector(axes, a, n, 0))), -c.weight[n - 1])
+    along = dot(load, t)
     tension = T[n - 1]
     sag = 0.5 * lower * upper / tension if tension > 0.0 else 0.0
-    for j in range(3):
-        x[n, j] += sag * (load[j] - along * t[j])
+    add(x, axes, n, 0, times(sag, minus(load, times(along, t))))
     T[n - 1] = max(0.0, tension - 0.5 * along * upper)
     T[n] = max(0.0, tension + 0.5 * along * lower)
     c.length[n - 1], c.length[n] = lower, upper
     if tension > 0.0:
-        c.length[n - 1] = _fitted(c, n - 1, n, x, v, T[n - 1], 0.0)
-        c.length[n] = _fitted(c, n, n + 1, x, v, T[n], reel)
+        c.length[n - 1] = _fitted(c, n - 1, n, x, v, T[n - 1], 0.0, axes)
+        c.length[n] = _fitted(c, n, n + 1, x, v, T[n], reel, axes)
 
 
 @inner_kernel
-def merge(c: Chain, n: int, x: Floats, v: Floats, a: Floats, T: Floats, reel: float) -> None:
+def merge(c: Chain, n: int, x: Floats, v: Floats, a: Floats, T: Floats, reel: float, axes: Axes) -> None:
     """Take node n - 1 out: the link of node n - 2 reaches to the ship, which moves to row n - 1."""
     length = c.length[n - 2] + c.length[n - 1]
     T[n - 2] = (c.length[n - 2] * T[n - 2] + c.length[n - 1] * T[n - 1]) / length
-    for j in range(3):
-        x[n - 1, j], v[n - 1, j], a[n - 1, j] = x[n, j], v[n, j], a[n, j]
+    for of in (x, v, a):
+        put(of, n - 1, 0, vector(axes, of, n, 0))
     c.length[n - 2] = length
     if T[n - 2] > 0.0:
-        c.length[n - 2] = _fitted(c, n - 2, n - 1, x, v, T[n - 2], reel)
+        c.length[n - 2] = _fitted(c, n - 2, n - 1, x, v, T[n - 2], reel, axes)

@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ident.dense_chain import accelerations, lumps
+from ident.benchmark.dense_chain import accelerations, lumps
 from models.link_joint import gauss
 from models.link_joint.chain import Chain, build
+from models.link_joint.columns import work_for
 from models.link_joint.energy import energy_of, power_of
 from models.link_joint.simulation import LARGEST_IMBALANCE
-from models.link_joint.stage import work_for
 from models.tow import Tow
 from models.towed_system import TowedSystem
 
@@ -47,21 +47,23 @@ def naive_run(
     return times, *(np.array(each) for each in zip(*record, strict=True))
 
 
-def random_state(length: float, links: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
+def random_state(length: float, links: int, seed: int, planar: bool) -> tuple[np.ndarray, np.ndarray]:
     """Places and velocities (links + 1, 3) of rigid links, each turning at a rate of its own; row 0 moves freely."""
     rng = np.random.default_rng(seed)
-    t = rng.normal(size=(links, 3)) - np.array([0.0, 0.0, 1.0])
+    plane = np.array([1.0, 0.0 if planar else 1.0, 1.0])
+    t = plane * rng.normal(size=(links, 3)) - np.array([0.0, 0.0, 1.0])
     r = length / links * t / np.linalg.norm(t, axis=1)[:, None]
-    start = rng.normal(size=(2, 1, 3))
-    turning = np.cross(0.02 * rng.normal(size=(links, 3)), r)
+    start = plane * rng.normal(size=(2, 1, 3))
+    turning = plane * np.cross(0.02 * rng.normal(size=(links, 3)), r)
     return (
         np.concatenate([start[0], start[0] + np.cumsum(r, axis=0)]),
         np.concatenate([start[1], start[1] + np.cumsum(turning, axis=0)]),
     )
 
 
+@pytest.mark.parametrize("planar", [False, True])
 @pytest.mark.parametrize("seed", range(5))
-def test_the_kernel_solves_the_accelerations(configurations: Callable[[str], Tow], seed: int) -> None:
+def test_the_kernel_solves_the_accelerations(configurations: Callable[[str], Tow], seed: int, planar: bool) -> None:
     """Any shape, also a pushing one; the kernel eliminates link by link, the printed form takes a pseudo-inverse.
 
     Without the cable's drag, which the kernel lumps in its own way; the body has its own.
@@ -70,12 +72,13 @@ def test_the_kernel_solves_the_accelerations(configurations: Callable[[str], Tow
     bare = replace(tow.cable, axial_stiffness=1e15, normal_drag_coefficient=0.0, tangential_drag_coefficient=0.0)
     tow = replace(tow, cable=bare)
     system, links = TowedSystem.from_tow(tow), 24
-    x, v = random_state(1200.0, links, seed)
-    ship = np.array([0.3, -0.2, 0.5])
+    x, v = random_state(1200.0, links, seed, planar)
+    ship, axes = np.array([0.3, 0.0 if planar else -0.2, 0.5]), [0, 2] if planar else [0, 1, 2]
     M, weight, C = lumps(system.parts[0], 1025.0, x, v)
     exact, tension = accelerations(M, weight - C @ v[1:].ravel(), x, v, ship)
-    found, T = gauss.accelerations(build(system, links).chain, x[::-1], v[::-1], np.zeros(links), ship)
-    np.testing.assert_allclose(found[:-1][::-1], exact, rtol=1e-8, atol=1e-8 * np.abs(exact).max())
+    chain, moving = build(system, links).chain, (each[::-1][:, axes] for each in (x, v))
+    found, T = gauss.accelerations(chain, *moving, np.zeros(links), ship[axes])
+    np.testing.assert_allclose(found[:-1][::-1], exact[:, axes], rtol=1e-8, atol=1e-8 * np.abs(exact).max())
     np.testing.assert_allclose(T[::-1], tension, rtol=1e-8, atol=1e-8 * np.abs(tension).max())
     assert np.abs(tension).max() > 200.0
 
@@ -94,8 +97,9 @@ def imbalance(chain: Chain, times: np.ndarray, *states: np.ndarray) -> float:
     """The kernel's own account of energy over a run, as a share of the work turned over."""
     n, step = chain.length.size, float(times[1])
     x, v, a, T = (np.ascontiguousarray(each[:, ::-1]) for each in states)
-    energy = [energy_of(chain, n, x[k], v[k], T[k]) for k in range(times.size)]
-    power = np.array([power_of(chain, n, x[k], v[k], a[k], T[k], work_for(n + 1)) for k in range(times.size)])
+    work = work_for(n + 1)
+    energy = [energy_of(chain, n, x[k], v[k], T[k], work) for k in range(times.size)]
+    power = np.array([power_of(chain, n, x[k], v[k], a[k], T[k], work) for k in range(times.size)])
     drag, other = power[:, 1], power[:, 0] - power[:, 1]
     worked = float(np.trapezoid(power[:, 0], dx=step))
     turnover = float(np.trapezoid(np.abs(drag) + np.abs(other), dx=step))

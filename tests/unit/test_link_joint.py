@@ -171,24 +171,25 @@ def test_derivatives_of_the_drag_laws(law: int, un: float, ut: float) -> None:
         assert (up[1] - down[1]) / (2.0 * e) == pytest.approx(here[db], abs=1e-6)
 
 
+@pytest.mark.parametrize("axes", [[0, 2], [0, 1, 2]], ids=["plane", "space"])
 @pytest.mark.parametrize("law", [0, 1])
-def test_derivatives_of_a_links_drag(law: int) -> None:
+def test_derivatives_of_a_links_drag(law: int, axes: list[int]) -> None:
     """D = -dF/du and S = -dF/dr against differences, r turned and stretched."""
-    u, r = np.array([1.1, -0.4, 0.3]), np.array([3.0, 1.0, -5.0])
+    u, r = np.array([1.1, -0.4, 0.3])[axes], np.array([3.0, 1.0, -5.0])[axes]
+    d = len(axes)
 
-    def force(u: np.ndarray, r: np.ndarray) -> np.ndarray:
+    def drag(u: np.ndarray, r: np.ndarray) -> tuple[np.ndarray, ...]:
         size = float(np.linalg.norm(r))
-        return np.array(end_drag(law, 3.0, 0.2, *u, *(r / size), size)[0])
+        return tuple(map(np.array, end_drag(law, 3.0, 0.2, tuple(u), tuple(r / size), size)))
 
-    size = float(np.linalg.norm(r))
-    _, D, S = end_drag(law, 3.0, 0.2, *u, *(r / size), size)
+    _, D, S = drag(u, r)
     e = 1e-6
-    for k in range(3):
-        step = e * np.eye(3)[k]
-        by_u = (force(u + step, r) - force(u - step, r)) / (2.0 * e)
-        by_r = (force(u, r + step) - force(u, r - step)) / (2.0 * e)
-        np.testing.assert_allclose(np.reshape(D, (3, 3))[:, k], -by_u, atol=1e-7)
-        np.testing.assert_allclose(np.reshape(S, (3, 3))[:, k], by_r, atol=1e-7)
+    for k in range(d):
+        step = e * np.eye(d)[k]
+        by_u = (drag(u + step, r)[0] - drag(u - step, r)[0]) / (2.0 * e)
+        by_r = (drag(u, r + step)[0] - drag(u, r - step)[0]) / (2.0 * e)
+        np.testing.assert_allclose(D.reshape(d, d)[:, k], -by_u, atol=1e-7)
+        np.testing.assert_allclose(S.reshape(d, d)[:, k], by_r, atol=1e-7)
 
 
 def test_the_incidence_law_pulls_along_a_cable_that_follows_the_flow() -> None:
