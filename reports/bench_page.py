@@ -7,11 +7,14 @@ from typing import Any
 
 import pandas as pd
 
-from reports import matrix_bench, sections
+from reports import leaving_out, matrix_bench, reduced_bench, sections, spectral_bench
 from reports.figures import bench
 from reports.figures.bench import Curve, Sizes
+from reports.leaving_out import LeavingOutMaterial
 from reports.markdown import Page
 from reports.matrix_bench import MatrixMaterial
+from reports.reduced_bench import ReducedMaterial
+from reports.spectral_bench import SpectralMaterial
 from reports.style import Album
 
 
@@ -64,12 +67,15 @@ class BenchMaterial:
         What the turn is, in a sentence.
     peer_note
         The peer's version and how its settings were found, or how to install it.
-    matrix
-        The part on the matrix method.
+    matrix, reduced, left_out, spectral
+        The parts on the matrix method, on the reduced models, on what scenes leave out, and on the spectral simulator;
+        ``None`` where no configuration is theirs.
+    judged
+        Whether enough was run to be held against the figures to reach.
     cut
         (what, why) was left out.
     compile_s
-        Compiling before the first run [s].
+        CPU time of compiling where no machine code is kept, by method [s]; empty where it was not measured.
     configuration_text, manifest
         As on the page of a run.
     """
@@ -84,7 +90,11 @@ class BenchMaterial:
     turn_words: str
     peer_note: str
     matrix: MatrixMaterial
-    compile_s: float
+    reduced: ReducedMaterial | None
+    left_out: LeavingOutMaterial
+    spectral: SpectralMaterial | None
+    compile_s: Mapping[str, float]
+    judged: bool = True
     cut: Sequence[tuple[str, str]] = ()
     configuration_text: str = ""
     manifest: Mapping[str, Any] = field(default_factory=dict)
@@ -134,10 +144,10 @@ def write_bench_page(folder: Path, material: BenchMaterial) -> None:
         "Times are CPU time of the one thread that computes, medians of interleaved repetitions; `bench.csv` has their "
         "spread. Errors are the RMS of the lower end's velocity against a converged run of the same code, whose own "
         "error is estimated and shown.",
-        f"Compiling took {material.compile_s:.1f} s before the first run, and is not in the times."
-        if material.compile_s > 0.5
-        else "The machine code was kept from an earlier run, so nothing was compiled.",
+        _compile_words(material.compile_s),
     )
+    if not material.judged:
+        page.paragraph("This is a quick run: too small to be held against the figures to reach.")
     if len(material.targets):
         page.table(material.targets, _TARGETS)
     page.heading("Work and precision of the link-joint chain")
@@ -169,11 +179,24 @@ def write_bench_page(folder: Path, material: BenchMaterial) -> None:
         )
         page.table(material.dense, _DENSE)
     matrix_bench.write(page, album, material.matrix)
+    if material.spectral is not None:
+        spectral_bench.write(page, album, material.spectral)
+    if material.reduced is not None:
+        reduced_bench.write(page, album, material.reduced)
+    leaving_out.write(page, material.left_out)
     if material.cut:
         page.heading("Left out")
         page.bullets(f"{what}: {why}" for what, why in material.cut)
     sections.manifest(page, material.manifest, material.configuration_text)
     page.write(folder / "report.md")
+
+
+def _compile_words(seconds: Mapping[str, float]) -> str:
+    """What compiling takes, once an installation."""
+    if not seconds:
+        return "What compiling takes is not in the times; `bench.csv` has what was left of it before the first run."
+    said = [f"{method} {each:.1f}" for method, each in seconds.items()]
+    return f"Compiling is not in the times; once an installation it takes, in s of CPU time: {', '.join(said)}."
 
 
 def _diagram(page: Page, album: Album, diagram: Diagram) -> None:

@@ -42,8 +42,6 @@ class MatrixMaterial:
         Columns ``configuration, method, settings, error_percent, difference_percent, cpu_s, ratio``.
     simulated_words
         Which sea that is, in a sentence.
-    compile_words
-        What compiling takes, in a sentence.
     """
 
     words: str
@@ -58,7 +56,6 @@ class MatrixMaterial:
     solvers: pd.DataFrame = field(default_factory=pd.DataFrame)
     simulated: pd.DataFrame = field(default_factory=pd.DataFrame)
     simulated_words: str = ""
-    compile_words: str = ""
 
 
 _PARTS = {"part": "part", "milliseconds": "CPU time, ms", "spread": "spread"}
@@ -106,7 +103,7 @@ _SIMULATED = {
 def write(page: Page, album: Album, material: MatrixMaterial) -> None:
     """Add the part to a page."""
     page.heading("Matrix method")
-    page.paragraph(material.words, material.compile_words)
+    page.paragraph(material.words)
     if len(material.parts):
         page.heading("The run of the paper", 3)
         page.paragraph(material.paper_words)

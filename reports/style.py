@@ -16,7 +16,7 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
+from matplotlib.ticker import FuncFormatter, LogFormatterSciNotation, LogLocator, MaxNLocator, NullFormatter
 from PIL import Image
 
 #: Width of every figure [in]: 157 mm on paper, 930 px on a screen.
@@ -170,6 +170,16 @@ def plain_log(axis: Any, numbers: tuple[float, ...] = (1.0, 2.0, 5.0)) -> None:
     axis.set_major_locator(LogLocator(subs=numbers, numticks=30))
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axis.set_minor_formatter(NullFormatter())
+
+
+def few_log(*axes: Any) -> None:
+    """Numbers that do not touch on logarithmic axes: powers of ten, or 1, 2 and 5 where hardly one is in sight."""
+    for axis in axes:
+        low, high = sorted(axis.get_view_interval())
+        if high < 10.0**1.5 * low:
+            axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0), numticks=30))
+        axis.set_major_formatter(LogFormatterSciNotation(labelOnlyBase=False))
+        axis.set_minor_formatter(NullFormatter())
 
 
 def shade_unscored(axes: Axes, start: float, scored_from: float) -> None:

@@ -43,6 +43,7 @@ def work_precision(curves: Sequence[Curve], time: str = "CPU time for an hour, s
             axes.plot(*zip(*curve.every, strict=True), linestyle="none", markersize=2.0, alpha=0.5, **look)
             axes.plot(*zip(*curve.best, strict=True), linestyle=style.DASHES[i % 6], label=curve.label, **look)
         axes.set(xscale="log", yscale="log", title=tow, xlabel="RMS velocity error, m/s")
+        style.few_log(axes.xaxis, axes.yaxis)
     grid[0, 0].set_ylabel(time)
     grid[0, 0].legend(loc="best")
     return made

@@ -10,15 +10,18 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from ident import chain_bench, peers, transfer_bench
-from ident.bench_record import COLUMNS, FREQUENCY_COLUMNS
-from ident.chain_bench import REDUCED
+from ident.benchmark import chain_bench, compiling, leaving_out, peers, reduced_bench, spectral_bench, transfer_bench
+from ident.benchmark.bench_record import COLUMNS, FREQUENCY_COLUMNS, Record
+from ident.benchmark.chain_bench import REDUCED
 from ident.configuration import load
-from ident.studies.bench import bench
+from ident.studies.bench import Effort, bench
+from ident.timing import Timing
 from models.tow import Tow
 from models.towed_system import TowedSystem
 
-FEW = transfer_bench.REDUCED
+FEW, SMALL = transfer_bench.REDUCED, reduced_bench.REDUCED
+SINES = replace(spectral_bench.REDUCED, tolerances=(1e-2, 1e-4), methods=("Radau",))
+LEFT = replace(leaving_out.REDUCED, spectral=("autec-1200",), matrix=())
 TINY = replace(REDUCED, links=(4, 6), tolerances=(1e-2,), growth_links=(8, 16), growth_lengths=(60.0, 120.0))
 
 
@@ -34,7 +37,11 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         patch.setattr(peers, "version", lambda: None)
         names = ["autec-1200", "multipart-2200"]
         result = bench(
-            [load(name) for name in names], out=out, progress=quiet, budget=1000.0, effort=TINY, frequencies=FEW
+            [load(name) for name in names],
+            out=out,
+            progress=quiet,
+            budget=1000.0,
+            effort=Effort(chain=TINY, matrix=FEW, reduced=SMALL, leaving=LEFT, spectral=SINES),
         )
     assert result.folder == out
     assert {"target", "asked", "found", "met"} == set(result.table[0])
@@ -84,6 +91,35 @@ def test_the_seconds_of_the_matrix_method(folder: Path) -> None:
         assert (folder / "figures" / f"{figure}.png").stat().st_size > 1000
 
 
+def test_the_reduced_models_have_rows(folder: Path) -> None:
+    table = pd.read_csv(folder / "bench.csv")
+    reduced = table[table["method"].isin(reduced_bench.names(SMALL.links))]
+    assert set(reduced["method"]) == set(reduced_bench.names(SMALL.links))
+    assert (reduced["seconds_per_hour"] > 0.0).all()
+    libraries = table[table["method"].str.startswith("solve_ivp")]
+    assert libraries["configuration"].unique().tolist() == ["autec-1200"]
+    page = (folder / "report.md").read_text(encoding="utf-8")
+    assert "## Reduced models" in page
+    for figure in ("precision", "libraries", "growth", "identification"):
+        assert f"figures/reduced-{figure}.png" in page
+    assert len(pd.read_csv(folder / "libraries.csv")) == 4 * len(SMALL.methods)
+    assert len(pd.read_csv(folder / "searches.csv")) == 6
+
+
+def test_the_spectral_simulator_has_rows(folder: Path) -> None:
+    table = pd.read_csv(folder / "bench.csv")
+    spectral = table[table["method"] == "spectral"]
+    assert spectral["configuration"].unique().tolist() == ["autec-1200"]
+    assert {words.partition(":")[0] for words in spectral["setting"]} >= {"implicit", "newmark", "runge-kutta"}
+    assert (spectral["seconds_per_hour"] > 0.0).all()
+    same = table[table["error_kind"].str.startswith("steps alone")]
+    assert same["method"].unique().tolist() == ["solve_ivp Radau"]
+    page = (folder / "report.md").read_text(encoding="utf-8")
+    assert "## Spectral simulator" in page
+    for figure in ("precision", "libraries", "growth"):
+        assert f"figures/spectral-{figure}.png" in page
+
+
 def test_the_turn_is_run_with_each_number_of_parts(folder: Path) -> None:
     turns = pd.read_csv(folder / "turn.csv")
     assert turns["configuration"].unique().tolist() == ["multipart-2200"]
@@ -102,12 +138,32 @@ def test_the_page_names_what_is_missing(folder: Path) -> None:
     assert told["moordyn"] == "not installed"
 
 
+def test_what_scenes_leave_out_has_rows_and_a_target(folder: Path) -> None:
+    table = pd.read_csv(folder / "leaving-out.csv")
+    assert {"spectral", "link-joint"} < set(table["simulator"])
+    assert table["apart"].max() <= leaving_out.EQUAL
+    assert (table["error"] > 0.0).all()
+    page = (folder / "report.md").read_text(encoding="utf-8")
+    assert "## What scenes leave out" in page
+    assert "scenes without a term against the full model with it at zero" in page
+
+
 def test_what_the_budget_cuts_is_listed(tmp_path: Path) -> None:
-    bench([load("multipart-2200")], out=tmp_path / "out", progress=quiet, budget=0.0, effort=TINY, frequencies=FEW)
+    out = tmp_path / "out"
+    bench(
+        [load("multipart-2200")],
+        out=out,
+        progress=quiet,
+        budget=0.0,
+        effort=Effort(chain=TINY, matrix=FEW, reduced=SMALL),
+    )
     page = (tmp_path / "out" / "report.md").read_text(encoding="utf-8")
     left_out = page[page.index("## Left out") : page.index("## Manifest")]
     for what in ("growth", "the dense form", "the turn with 3 parts", "the paper's run of the matrix method"):
         assert what in left_out
+    assert "what scenes leave out" in left_out
+    assert "they know nothing of parts behind the vehicle" in left_out
+    assert not (out / "leaving-out.csv").exists()
     assert not (tmp_path / "out" / "turn.csv").exists()
     assert not (tmp_path / "out" / "frequency.csv").exists()
 
@@ -127,3 +183,27 @@ def test_the_dense_form_is_timed_on_a_state_it_solves(configurations: Callable[[
     assert row.links == 8
     assert math.isfinite(row.evaluation / row.step)
     assert np.sign(row.step) == 1.0
+
+
+@pytest.mark.slow
+def test_compiling_anew_takes_its_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A process of its own with no machine code kept compiles; one that calls for the second time does not."""
+    monkeypatch.setattr(compiling, "METHODS", {"matrix": compiling.METHODS["matrix"]})
+    assert compiling.compiled_anew()["matrix"] > 1.0
+    compiling.METHODS["matrix"]()
+    assert compiling.first_call("matrix") < 0.1
+
+
+def test_a_quick_run_is_not_judged(folder: Path) -> None:
+    record = Record(progress=quiet, budget=1.0, judged=False)
+    record.target("any", "1", "2", met=True)
+    assert record.targets[0]["met"] == "-"
+    assert "too small to be held against" not in (folder / "report.md").read_text(encoding="utf-8")
+
+
+def test_every_row_has_what_its_method_took_to_compile() -> None:
+    record = Record(progress=quiet, budget=1.0)
+    for method in ("matrix", "other"):
+        record.row("any", method, "", "", 0.0, Timing(1.0, 0.0, 1))
+    record.compiled("matrix", 3.0)
+    assert record.table()["compile_s"].tolist() == [3.0, 0.0]

@@ -8,8 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ident import peer_bench, peers, tows_compared
-from ident.peers import Setting
+from ident import tows_compared
+from ident.benchmark import peer_bench, peers
+from ident.benchmark.peers import Setting
 from ident.timing import Timing, exponent, front
 from models.body import Body
 from models.current import Current

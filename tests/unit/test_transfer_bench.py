@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ident import operations, transfer_bench, transfer_costs
-from ident.banded_response import BandedResponse, Drag
-from ident.operations import Counting
-from ident.transfer_bench import REDUCED, March
+from ident.benchmark import operations, transfer_bench, transfer_costs
+from ident.benchmark.banded_response import BandedResponse, Drag
+from ident.benchmark.operations import Counting
+from ident.benchmark.transfer_bench import REDUCED, March
 from models.current import Current
 from models.quantity import NumericalFailure
 from models.tow import Tow
@@ -141,8 +141,3 @@ def test_the_parts_of_an_iteration_add_up_to_its_operations(configurations: Tows
     assert sum(row.counted for row in rows) == sum(tally.values())
     assert sum(row.printed for row in rows) == transfer_costs.PRINTED_OPERATIONS
     assert sum(row.printed_per_node for row in rows) == 2684
-
-
-@pytest.mark.slow
-def test_compiling_anew_takes_its_time() -> None:
-    assert transfer_costs.cold_compilation() > 1.0

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from ident import peers
-from ident.peers import Setting, velocity_error
+from ident.benchmark import peers
+from ident.benchmark.peers import Setting, velocity_error
 from ident.timing import Timing, front
 from models.quantity import NumericalFailure
 from models.towed_system import TowedSystem

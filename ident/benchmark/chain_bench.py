@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from data_synth.ships import FullTurn, full_turn
-from ident import dense_chain
+from ident.benchmark import dense_chain
 from ident.timing import Timing, exponent, interleaved
 from models import link_joint
 from models.link_joint import LinkJointResult

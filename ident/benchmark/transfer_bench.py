@@ -6,8 +6,8 @@ from functools import partial
 
 import numpy as np
 
-from ident.banded_response import BandedResponse, Drag
-from ident.chain_bench import Growth
+from ident.benchmark.banded_response import BandedResponse, Drag
+from ident.benchmark.chain_bench import Growth
 from ident.timing import Timing, interleaved
 from models.statics import static_shape
 from models.tow import Tow
@@ -27,7 +27,7 @@ FINER = 4
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Effort:
-    """How much is run; `record` of a random sea [s]; `cold`: the kernels compiled anew in a process of their own."""
+    """How much is run; `record` of a random sea [s]."""
 
     frequencies: int = FREQUENCIES
     segments: tuple[int, ...] = (16, 32, 64, 128, 256, 512, 1024)
@@ -36,7 +36,6 @@ class Effort:
     growth_frequencies: tuple[int, ...] = (25, 50, 100, 200, 400, 800)
     repetitions: int = 5
     record: float = 3600.0
-    cold: bool = True
 
 
 FULL = Effort()
@@ -49,7 +48,6 @@ REDUCED = Effort(
     growth_frequencies=(5, 10, 20),
     repetitions=1,
     record=120.0,
-    cold=False,
 )
 
 

@@ -9,15 +9,15 @@ from typing import Any
 import pandas as pd
 
 from data_synth.spectra import sea_state
-from ident import transfer_bench, transfer_costs
-from ident.bench_record import Record
-from ident.chain_bench import Growth
+from ident.benchmark import transfer_bench, transfer_costs
+from ident.benchmark.bench_record import Record
+from ident.benchmark.chain_bench import Growth
+from ident.benchmark.transfer_bench import AMPLITUDE, FREQUENCIES, HIGH, LOW, SEGMENTS, TOLERANCE, Effort
+from ident.benchmark.transfer_costs import Cost
 from ident.chain_record import ChainSetting
 from ident.configuration import Configuration, load
 from ident.sea_checks import SeaCheck, check_sea
 from ident.timing import Timing, front
-from ident.transfer_bench import AMPLITUDE, FREQUENCIES, HIGH, LOW, SEGMENTS, TOLERANCE, Effort
-from ident.transfer_costs import Cost
 from models.quantity import InvalidInput, NumericalFailure
 from reports.figures.bench import Curve, Sizes
 from reports.markdown import significant
@@ -28,8 +28,8 @@ METHOD = "matrix"
 PAPER, SEA = "s-shape-205", "swath-4000"
 #: Figures to reach: CPU time of the paper's run [s], growth over a doubling, the simulation's time over the method's.
 _SECONDS, _DOUBLING, _TIMES = 0.06, 2.2, 100.0
-#: What is expected to take so long [s]: the paper's run and its parts, one configuration, the sea, compiling anew.
-_PAPER_TAKES, _ONE_TAKES, _SEA_TAKES, _COLD_TAKES = 8.0, 4.0, 15.0, 30.0
+#: What is expected to take so long [s]: the paper's run and its parts, one configuration, the sea.
+_PAPER_TAKES, _ONE_TAKES, _SEA_TAKES = 8.0, 4.0, 8.0
 #: An error of a mesh that is small enough, over the largest amplitude.
 _ENOUGH = 1e-2
 #: Sea state of the simulation and what is dropped before its record [s]; the chain's links, and the tolerance of its
@@ -108,16 +108,6 @@ def simulated(run: Record, effort: Effort, material: MatrixMaterial) -> MatrixMa
         f"1, in percent: {', '.join(apart)}. The RMS of a record so long is itself known within "
         f"{significant(float(rows['sampling_percent'].max()), 2)} %; half of that takes four times the record.",
     )
-
-
-def compiled_anew(run: Record, effort: Effort, material: MatrixMaterial) -> MatrixMaterial:
-    """The material with what compiling costs where no machine code is kept; as it is where there is no time to see."""
-    if not effort.cold or not run.has_time("compiling the matrix method anew", _COLD_TAKES):
-        return material
-    seconds = transfer_costs.cold_compilation()
-    run.call(PAPER, "compiling with no machine code kept", Timing(seconds, 0.0, 1))
-    words = f"Compiling all of its kernels in a fresh process takes {seconds:.1f} s of CPU time, once an installation."
-    return replace(material, compile_words=words)
 
 
 def _costs(run: Record, effort: Effort, paper: Configuration) -> dict[str, Any]:

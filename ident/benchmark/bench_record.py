@@ -5,6 +5,8 @@ import time
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+import pandas as pd
+
 from ident.terminal import Progress
 from ident.timing import Timing
 
@@ -43,6 +45,7 @@ class Record:
 
     progress: Progress
     budget: float
+    judged: bool = True  # whether enough is run to be held against the figures to reach
     begun: float = field(default_factory=time.perf_counter)
     rows: list[tuple[Any, ...]] = field(default_factory=list)
     frequency_rows: list[tuple[Any, ...]] = field(default_factory=list)
@@ -73,10 +76,15 @@ class Record:
 
     def row(self, configuration: str, method: str, setting: str, kind: str, error: float, timing: Timing) -> None:
         """A row of bench.csv; the timing is of a second of record."""
-        hour, compiled = HOUR * timing.seconds, self.compile_s.get(method, 0.0)
         self.rows.append(
-            (configuration, method, setting, kind, error, hour, compiled, timing.repetitions, timing.spread)
+            (configuration, method, setting, kind, error, HOUR * timing.seconds, timing.repetitions, timing.spread)
         )
+
+    def table(self) -> pd.DataFrame:
+        """bench.csv, with what each method took to compile."""
+        without = [name for name in COLUMNS if name != "compile_s"]
+        made = pd.DataFrame(self.rows, columns=without)
+        return made.assign(compile_s=made["method"].map(self.compile_s).fillna(0.0))[list(COLUMNS)]
 
     def untimed(self, configuration: str, method: str, setting: str, kind: str, error: float, timing: Timing) -> None:
         """A row of bench.csv of a method without simulated time, which leaves the seconds an hour empty."""
@@ -101,4 +109,4 @@ class Record:
 
     def target(self, what: str, asked: str, found: str, met: bool) -> None:
         """A row of the table of targets."""
-        self.targets.append({"target": what, "asked": asked, "found": found, "met": met})
+        self.targets.append({"target": what, "asked": asked, "found": found, "met": met if self.judged else "-"})

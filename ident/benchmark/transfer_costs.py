@@ -1,10 +1,6 @@
 """What H's run of the matrix method takes (section IV-D), by part: time, operations beside H Table VI, compiling."""
 
 import math
-import os
-import subprocess
-import sys
-import tempfile
 import time
 from collections import Counter
 from collections.abc import Callable
@@ -13,10 +9,9 @@ from functools import partial
 
 import numpy as np
 
-from ident import operations
-from ident.banded_response import Drag
-from ident.timing import Timing, interleaved
-from ident.transfer_bench import (
+from ident.benchmark import operations
+from ident.benchmark.banded_response import Drag
+from ident.benchmark.transfer_bench import (
     AMPLITUDE,
     FULL,
     HIGH,
@@ -29,6 +24,7 @@ from ident.transfer_bench import (
     frequencies,
     line_with,
 )
+from ident.timing import Timing, interleaved
 from models.statics import static_shape
 from models.tow import Tow
 from models.transfer_matrix import frequency_response
@@ -164,27 +160,6 @@ def _rounds(march: March, drag: Drag) -> None:
 
 def _march(march: March) -> None:
     march()
-
-
-def cold_compilation() -> float:
-    """CPU time of compiling every kernel of a harmonic response, in a process with no machine code kept [s]."""
-    program = (
-        "import time\n"
-        "from ident.configuration import load\n"
-        "from models.transfer_matrix import frequency_response\n"
-        "tow, taken = load('s-shape-205').tow, []\n"
-        "for _ in range(2):\n"
-        "    began = time.process_time()\n"
-        "    frequency_response(tow, [0.1, 0.2], segments=16, companion=False)\n"
-        "    taken.append(time.process_time() - began)\n"
-        "print(taken[0] - taken[1])\n"
-    )
-    with tempfile.TemporaryDirectory() as folder:
-        environment = os.environ | {"NUMBA_CACHE_DIR": folder, "PYTHONPATH": os.pathsep.join(sys.path)}
-        run = subprocess.run(
-            [sys.executable, "-c", program], env=environment, check=True, capture_output=True, text=True
-        )
-    return float(run.stdout)
 
 
 def first_call(tow: Tow) -> float:
