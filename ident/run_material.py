@@ -1,7 +1,7 @@
 """What the page of a run shows, gathered from its records, fits and scores."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pandas as pd
@@ -10,6 +10,7 @@ from ident import scene, thesis
 from ident.configuration import Configuration
 from ident.drag_tables import drag_over_spring_table, total_drag_table
 from ident.learning import Fit
+from ident.leaving_out.needless import needless
 from ident.manifest import manifest
 from ident.run_records import CURRENT, IDENTIFICATION, MEASURED, TRUTH, Records
 from ident.scores import parameters_table
@@ -21,6 +22,7 @@ from models.reduced import Response
 from models.spectral import SpectralResult
 from models.statics import StaticShape
 from reports.figures.residuals import ResidualCurves
+from reports.markdown import significant
 from reports.run_material import RunMaterial
 from reports.series import RecordSeries
 
@@ -53,8 +55,10 @@ def run_material(
         configuration_text=configuration.text,
         left_out=scene.left_out(configuration, chain=True),
         unused=scene.unused(configuration, configuration.unused),
+        needless=[(each.key, each.words) for each in needless(configuration, records.ship, result.harmonics)],
         input_note=_input_note(configuration, result, seed),
         truth_note=_truth_note(configuration, check),
+        step_note=_step_note(named),
         records=_series(configuration, records, responses),
         scores=scores,
         parameters=parameters,
@@ -234,6 +238,17 @@ def _input_note(configuration: Configuration, result: SpectralResult, seed: int)
         f"second-order Butterworth filter at {given.cutoff:g} rad/s, scaled to at most {given.max_speed:g} m/s "
         f"(T 6.1), seed {seed}. Scored from {configuration.scoring.settle:g} s. The spectral simulator answers with "
         f"{result.harmonics} harmonics at {result.stations} stations in {result.steps} steps: {error}."
+    )
+
+
+def _step_note(fits: Mapping[str, Fit]) -> str:
+    errors = {name: fit.step_error for name, fit in fits.items() if math.isfinite(fit.step_error)}
+    if not errors:
+        return ""
+    worst = max(errors, key=lambda name: errors[name])
+    return (
+        f"Their steps err by at most {significant(errors[worst], 2)} m/s RMS ({worst}), estimated by finer ones "
+        "on the identification record."
     )
 
 

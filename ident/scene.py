@@ -75,6 +75,7 @@ def left_out(
         ("third dimension", "the ship's input lies in one vertical plane"),
         ("axial waves of the cable", "the tension is quasi-static (T 2.2): their modes are far above the input's band"),
         ("bending and torsion of the cable", "small beside the tension (T 2.2)"),
+        ("compensator", "the cable's top moves with the ship; see the compensator study"),
         ("strumming", "no drag amplification is asked for"),
     ]
     if configuration.link_joint.strumming:
@@ -102,6 +103,8 @@ def left_out(
         missing.append(("stretch by water pressure", why))
     if all(cable.tangential_drag_coefficient == 0.0 for cable in tow.cables):
         missing.append(("tangential drag", "its coefficient is zero"))
+    if all(cable.axial_damping == 0.0 for cable in tow.cables):
+        missing.append(("internal loss of the cable", "no axial damping is given"))
     return missing
 
 

@@ -29,8 +29,12 @@ class RunMaterial:
         (term, why) of each effect that the scene does without.
     unused
         (setting, why) of each setting that the scene does not use.
+    needless
+        (setting, why) of each setting that makes no measurable difference.
     input_note
         How the ship's motion for the identification was made, with its seed.
+    step_note
+        What the steps of the reduced models err by, in a sentence.
     truth_note
         What stands for the truth at verification, said plainly.
     records
@@ -99,8 +103,10 @@ class RunMaterial:
     configuration_text: str = ""
     left_out: Sequence[tuple[str, str]] = ()
     unused: Sequence[tuple[str, str]] = ()
+    needless: Sequence[tuple[str, str]] = ()
     input_note: str = ""
     truth_note: str = ""
+    step_note: str = ""
     thesis: pd.DataFrame = field(default_factory=pd.DataFrame)
     floors: pd.DataFrame = field(default_factory=pd.DataFrame)
     drag_over_spring: pd.DataFrame = field(default_factory=pd.DataFrame)

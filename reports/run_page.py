@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from reports import findings, sections
+from reports import findings, leaving_out, sections
 from reports.figures import frequency, identifiability, records, residuals, scores, shapes
 from reports.markdown import Page, significant
 from reports.run_material import RunMaterial
@@ -18,6 +18,7 @@ def write_run_page(folder: Path, material: RunMaterial) -> None:
     page.paragraph(material.description)
     page.paragraph(*findings.verdict(material.scores, material.parameters))
     sections.configuration(page, material.configuration, material.left_out, material.unused)
+    leaving_out.suggest(page, material.needless)
     _cable(page, album, material)
     _input(page, album, material)
     _scores(page, album, material)
@@ -96,6 +97,7 @@ def _run_time(page: Page, album: Album, material: RunMaterial) -> None:
     page.heading("Error against run time")
     second = findings.verification_record(material.scores)
     sections.run_times(page, material.scores, "identification", second)
+    page.paragraph(material.step_note)
     shown = ["identification", *([second] if second else [])]
     link = album.draw("error-run-time", scores.error_against_run_time, material.scores, shown)
     page.figure(

@@ -59,6 +59,10 @@ def left_out(text: str) -> set[str]:
             "stretch by water pressure",
             lambda text: text.replace("length_m = 800.0", "length_m = 800.0\npoisson_ratio = 0.3", 1),
         ),
+        (
+            "internal loss of the cable",
+            lambda text: text.replace("length_m = 800.0", "length_m = 800.0\naxial_damping_s = 0.01", 1),
+        ),
     ],
 )
 def test_an_effect_that_is_given_is_not_left_out(effect: str, change: Callable[[str], str]) -> None:
