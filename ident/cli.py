@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from ident import frequency_cli, options
+from ident import frequency_cli, measuring_cli, options
 from ident.exits import exit_code
 from ident.options import (
     Budget,
@@ -338,52 +338,8 @@ def turn(
     typer.echo(f"{result.folder / 'report.md'} written.")
 
 
-@app.command()
-def compare(
-    names: Annotated[
-        list[str] | None, typer.Argument(metavar="[NAME|FILE]...", help="Configurations; three built in if left out.")
-    ] = None,
-    out: Out = Path("compare"),
-    quiet: Quiet = False,
-) -> None:
-    """Compare the simulators over speed and angle."""
-    configurations = [options.load(name) for name in names or options.COMPARED]
-    from ident.studies import compare as study
-
-    with progress(quiet=quiet) as report:
-        result = study.compare(configurations, out=out, progress=report)
-    write_table(result.table)
-    typer.echo(f"{result.folder / 'report.md'} written.")
-
-
-@app.command()
-def bench(
-    names: Annotated[
-        list[str] | None, typer.Argument(metavar="[NAME|FILE]...", help="Configurations; two built in if left out.")
-    ] = None,
-    out: Out = Path("bench"),
-    quiet: Quiet = False,
-) -> None:
-    """Measure error against run time, also of MoorDyn."""
-    configurations = [options.load(name) for name in names or options.BENCHED]
-    from ident.studies import bench as study
-
-    with progress(quiet=quiet) as report:
-        result = study.bench(configurations, out=out, progress=report)
-    write_table(result.table)
-    typer.echo(f"{result.folder / 'report.md'} written.")
-
-
-@app.command()
-def gallery(out: Out = Path("reports/gallery"), quiet: Quiet = False) -> None:
-    """Make the pages of the built-in configurations."""
-    from ident.studies import gallery as study
-
-    with progress(quiet=quiet) as report:
-        study.gallery(out=out, progress=report)
-
-
 frequency_cli.add_to(app)
+measuring_cli.add_to(app)
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -16,7 +16,7 @@ T = TypeVar("T")
 
 #: What the simulators are compared on, and what the benchmark measures, unless told.
 COMPARED = ("mangus-740", "autec-1200", "mangus-2500")
-BENCHED = ("multipart-2200", "autec-1200")
+BENCHED = ("multipart-2200", "autec-1200", "mangus-740", "mangus-2500")
 
 
 class Start(StrEnum):

@@ -212,7 +212,8 @@ def test_record_takes_the_simulator_that_the_input_needs_or_the_one_asked_for(ca
         assert vehicle is not None
         both[name] = vehicle.position[:, 0]
     assert np.ptp(both["spectral"]) > 1.0
-    np.testing.assert_allclose(both["link-joint"], both["spectral"], atol=0.02)
+    # Each estimates its error at 2e-4 m/s, for two minutes.
+    np.testing.assert_allclose(both["link-joint"], both["spectral"], atol=0.03)
     no = ("record", cable, "--input", "recorded-style", "--reference", "spectral", "--out", "x.csv")
     assert "leave out --reference" in refused(capsys, *no)
     no = ("record", cable, "--input", "winch-depth", "--reference", "link-joint", "--out", "x.csv")
@@ -692,6 +693,11 @@ def test_summary_holds_the_median_against_the_thesis() -> None:
         ("crossval {cable} --record none.csv --out out", "none.csv"),
         ("crossval {cable} --record ship.csv --out out", "no vehicle"),
         ("crossval {cable} --record ship.csv --out ship.csv", "is a file"),
+        ("bench s-shape-205 --out out", "sections"),
+        ("bench none --out out", "none"),
+        ("bench --out ship.csv", "is a file"),
+        ("stability --out ship.csv", "is a file"),
+        ("stability --only none --out out", "No case begins with"),
         ("gallery --out ship.csv", "is a file"),
         ("gallery --out none/gallery", "make it first"),
     ],

@@ -31,6 +31,7 @@ class Result:
     table: tuple[dict[str, str], ...] = ({"model": "massless-4-linear", "rms": "0.014"},)
     folder = Path("made")
     notes = ("tow.csv: 1 gap in time",)
+    failed: tuple[str, ...] = ()
 
 
 @pytest.fixture
@@ -56,6 +57,7 @@ def called(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
         "turn",
         "compare",
         "bench",
+        "stability",
         "gallery",
     ):
         module = types.ModuleType(f"ident.studies.{name}")
@@ -167,10 +169,20 @@ def test_compare_and_bench_take_any_number_of_configurations(called: dict[str, A
     assert [each.name for each in called["first"]] == ["mangus-740", "autec-1200", "mangus-2500"]
     assert (called["study"], called["out"]) == ("compare", Path("compare"))
     assert main(["bench", "--quiet"]) == 0
+    assert [each.name for each in called["first"]] == ["multipart-2200", "autec-1200", "mangus-740", "mangus-2500"]
+    assert (called["out"], called["quick"]) == (Path("bench"), False)
+    assert main(["bench", "--quick", "--quiet"]) == 0
     assert [each.name for each in called["first"]] == ["multipart-2200", "autec-1200"]
-    assert called["out"] == Path("bench")
+    assert called["quick"]
     assert main(["bench", "mangus-740", "--out", "x", "--quiet"]) == 0
     assert ([each.name for each in called["first"]], called["out"]) == (["mangus-740"], Path("x"))
+
+
+def test_stability_takes_the_beginnings_of_names(called: dict[str, Any]) -> None:
+    assert main(["stability", "--quiet"]) == 0
+    assert (called["out"], called["only"], called["quick"]) == (Path("stability"), (), False)
+    assert main(["stability", "--only", "chain-length, fit", "--quick", "--out", "x", "--quiet"]) == 0
+    assert (called["out"], called["only"], called["quick"]) == (Path("x"), ("chain-length", "fit"), True)
 
 
 @pytest.mark.parametrize(
