@@ -25,16 +25,26 @@ class Plane:
 
     def along(self, vectors: Floats) -> Floats:
         """Components (..., 2) of vectors (..., 3) along the plane and up."""
-        return np.stack([self.x * vectors[..., 0] + self.y * vectors[..., 1], vectors[..., 2]], axis=-1)
+        made = np.empty((*vectors.shape[:-1], 2))
+        np.multiply(self.x, vectors[..., 0], out=made[..., 0])
+        if self.y != 0.0:
+            made[..., 0] += self.y * vectors[..., 1]
+        made[..., 1] = vectors[..., 2]
+        return made
 
     def in_space(self, vectors: Floats) -> Floats:
         """Vectors (..., 3) from their components (..., 2)."""
-        s, z = vectors[..., 0], vectors[..., 1]
-        return np.stack([self.x * s, self.y * s, z], axis=-1)
+        made = np.empty((*vectors.shape[:-1], 3))
+        np.multiply(self.x, vectors[..., 0], out=made[..., 0])
+        np.multiply(self.y, vectors[..., 0], out=made[..., 1])
+        made[..., 2] = vectors[..., 1]
+        return made
 
     def places_in_space(self, places: Floats) -> Floats:
         """Positions (..., 3) from their components (..., 2)."""
-        made: Floats = self.in_space(places) + np.array([-self.offset * self.y, self.offset * self.x, 0.0])
+        made = self.in_space(places)
+        if self.offset != 0.0:
+            made += np.array([-self.offset * self.y, self.offset * self.x, 0.0])
         return made
 
     def chain(self, chain: Chain) -> Chain:

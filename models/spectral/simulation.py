@@ -27,9 +27,9 @@ Start = Literal["rest", "steady"]
 #: Most steps of a run, accepted and rejected.
 STEP_BUDGET = 5_000_000
 #: Local error per step that a wanted error of the whole record allows, measured on the built-in configurations.
-_LOCAL_SHARE: dict[Stepper, float] = {"implicit": 0.024, "newmark": 0.24, "runge-kutta": 0.24}
+_LOCAL_SHARE: dict[Stepper, float] = {"implicit": 0.012, "newmark": 0.24, "runge-kutta": 0.24}
 #: Harmonics and tolerance of the companion run, and how much smaller the error of the finer run is at least.
-_COMPANION_HARMONICS, _COMPANION_TOLERANCE, _COMPANION_RATIO = 0.6, 4.0, 0.3
+_COMPANION_HARMONICS, _COMPANION_TOLERANCE, _COMPANION_RATIO = 0.6, 4.0, 0.4
 _REFINEMENTS = 5
 #: Share of the tolerance that the surge may err by before a refinement lengthens the series too.
 _SERIES_SHARE = 0.6

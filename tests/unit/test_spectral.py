@@ -210,7 +210,7 @@ def test_two_samples_are_a_straight_line(configurations: Callable[[str], Tow]) -
     assert two.vehicle.position[-1, 0] == pytest.approx(many.vehicle.position[-1, 0], abs=1e-5)
 
 
-@pytest.mark.parametrize(("amplitude", "omega"), [(25.0, 2e-4), (250.0, 2e-4), (25.0, 1e-3)])
+@pytest.mark.parametrize(("amplitude", "omega"), [(25.0, 2e-4), (250.0, 2e-4), (25.0, 5e-4)])
 def test_slow_motion_of_a_tied_vehicle_is_followed_in_few_steps(
     amplitude: float, omega: float, configurations: Callable[[str], Tow]
 ) -> None:
