@@ -57,7 +57,7 @@ class Fit:
         ``None`` where the fit failed.
     step_error
         RMS velocity error [m/s] that the fitted model's steps leave on the worst record, estimated by finer ones;
-        NaN where the fit failed.
+        NaN where nothing was examined, infinite where finer steps fail.
     """
 
     model: ReducedModel
@@ -166,8 +166,16 @@ def fit(
         gains=best.gains,
         waterfall=tuple(results),
         identifiability=examined,
-        step_error=math.nan if examined is None else max(reduced.step_error(fitted, case.drive) for case in cases),
+        step_error=math.nan if examined is None else _step_error(fitted, cases),
     )
+
+
+def _step_error(model: ReducedModel, cases: Sequence[Case]) -> float:
+    """On the worst record [m/s]; infinite where finer steps fail."""
+    try:
+        return max(reduced.step_error(model, case.drive) for case in cases)
+    except NumericalFailure:
+        return math.inf
 
 
 def fit_many(

@@ -10,7 +10,9 @@ from ident.options import Out, Quiet
 from ident.terminal import progress, write_table
 from models.quantity import NumericalFailure
 
-Quick = Annotated[bool, typer.Option("--quick", help="A small part of everything, in less than a minute.")]
+Quick = Annotated[
+    bool, typer.Option("--quick", help="A small part of everything, in less than a minute once compiled.")
+]
 
 
 def compare(

@@ -1,5 +1,6 @@
 """The two reference simulators on a ship's track: which one it needs, the record of its answer, and how good it is."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Literal
@@ -153,8 +154,9 @@ def recorded(name: str, ship: Trace, bodies: Sequence[Trace]) -> Record:
 def describe_spectral(result: SpectralResult) -> str:
     """Resolution, cost and error of a spectral run, as the end of a sentence."""
     given = result.error is None
-    error = "as configured, no error estimate" if given else f"estimated error {result.error:.1e} m/s RMS"
-    return f"{result.harmonics} harmonics, {result.stations} stations, {result.steps} steps; {error}."
+    error = "no error estimate" if given else f"estimated error {result.error:.1e} m/s RMS"
+    leans = f"the cable turns by up to {math.degrees(result.largest_angle):.2g} degrees from its static shape"
+    return f"{result.harmonics} harmonics, {result.stations} stations, {result.steps} steps; {error}; {leans}."
 
 
 def describe_chain(result: LinkJointResult) -> str:

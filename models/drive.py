@@ -15,7 +15,7 @@ from typing import Literal, NamedTuple, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from models.quantity import InvalidInput
+from models.quantity import InvalidInput, NumericalFailure
 from models.trace import Trace
 
 Floats = NDArray[np.float64]
@@ -30,6 +30,10 @@ MAX_STEP = 0.5
 
 #: Length of the stretch whose mean ship velocity is the speed of a steady start [s].
 STEADY_STRETCH = 60.0
+
+
+#: Most steps of one simulation: ten minutes of computing, and a few gigabytes.
+MOST_STEPS = 20_000_000
 
 
 class Grid(NamedTuple):
@@ -123,13 +127,26 @@ class Drive:
         _, which, count = np.unique(np.round(interval / quantum), return_inverse=True, return_counts=True)
         return np.bincount(which, interval) / count, which.astype(np.int64)
 
+    def first(self, intervals: int) -> Self:
+        """The beginning of the drive, of so many sampling intervals."""
+        end = intervals + 1
+        return replace(self, t=self.t[:end], u=self.u[:end], rates=self.rates[:end])
+
     def finer(self, parts: int) -> Self:
         """The same drive with each of the longest steps in so many parts."""
         return replace(self, max_step=min(self.max_step, float(np.diff(self.t).max())) / parts)
 
     def _grid(self, max_step: float) -> Grid:
         interval = np.diff(self.t)
-        substeps = np.maximum(np.ceil(interval / max_step - 1e-9), 1.0).astype(np.int64)
+        parts = np.maximum(np.ceil(interval / max_step - 1e-9), 1.0)
+        if parts.sum() > MOST_STEPS:
+            longest = int(interval.argmax())
+            raise NumericalFailure(
+                f"The record of {self.t[-1] - self.t[0]:g} s asks for {parts.sum():.3g} steps of at most {max_step:g} "
+                f"s, more than {MOST_STEPS:g}; its longest interval is {interval[longest]:g} s, after t = "
+                f"{self.t[longest]:g} s. Cut the record, or give a longer max_step."
+            )
+        substeps = parts.astype(np.int64)
         step = interval / substeps
         k = np.repeat(np.arange(interval.size), substeps)
         begun = (np.arange(k.size) - np.repeat(np.cumsum(substeps) - substeps, substeps)) * step[k]

@@ -47,6 +47,8 @@ _NAME = re.compile(r"(second-order|first-order|inertial|massless)(?:-(\d+))?-(li
 
 #: Parts of the longest step in the run that another's steps are judged by.
 _FINER = 8
+#: Steps of that run at the most.
+_JUDGED = 1_000_000
 
 
 class Response(NamedTuple):
@@ -184,13 +186,15 @@ def step_error(model: ReducedModel, drive: Drive) -> float:
 
     Stability may make a model take steps down to a quarter of the longest, so that an eighth of that halves all of
     them; at second order or better four thirds of the difference are the error at the most. A linear model is solved
-    exactly for the ship's spline: its error is that of rounding.
+    exactly for the ship's spline: its error is that of rounding. Of a record of weeks its beginning is judged.
 
     Raises
     ------
     NumericalFailure
         As `respond` does.
     """
+    finer = np.cumsum(np.ceil(np.diff(drive.t) * (_FINER / drive.max_step)) + 1.0)
+    drive = drive.first(max(1, int(np.searchsorted(finer, _JUDGED))))
     difference = respond(model, drive).velocity - respond(model, drive.finer(_FINER)).velocity
     return float(4.0 / 3.0 * np.sqrt(np.mean(difference**2)))
 

@@ -76,11 +76,13 @@ def write_stability_page(folder: Path, material: StabilityMaterial) -> None:
     table = material.table
     failed = table[~table["passed"].astype(bool)]
     page.paragraph(
-        f"{len(table)} cases, of which {len(table) - len(failed)} end as expected, in {table['seconds'].sum():.0f} s.",
+        f"{len(table)} cases, of which {len(table) - len(failed)} end as expected, in {table['seconds'].sum():.2g} s.",
         "What is expected of a case stands in a table apart from it, with its source: an answer within the allowed "
         "deviation of figures that were found in another way, or a named error. The margin "
         "is 1 less the worst deviation over the allowed one, and 1 for the expected error; above 0 a case passes. Of a "
-        "fault, put in on purpose, the deviation must be the larger one.",
+        "fault, put in on purpose, the deviation must be the larger one: its margin is 1 less the allowed deviation "
+        "over the one found.",
+        "This is a quick run: the cases that take no time." if material.manifest.get("quick") else "",
     )
     if len(failed):
         page.heading("Not as expected")
@@ -102,7 +104,8 @@ def write_stability_page(folder: Path, material: StabilityMaterial) -> None:
         page.table(some, _HEADINGS, _FORMATS)
     if len(material.figures):
         page.heading("All figures")
-        page.table(material.figures, _FIGURES)
+        exact = dict.fromkeys(("reference", "allowed", "found"), ".6g")
+        page.table(material.figures, _FIGURES, exact)
     sections.manifest(page, material.manifest, "")
     page.write(folder / "report.md")
 

@@ -65,7 +65,7 @@ class Record:
         """Whether so much is left of the budget; tells the progress, or lists what is left out."""
         left = max(0.0, self.budget - self._spent)
         if seconds > left:
-            self.cut.append((what, f"would take about {seconds:g} s of the {left:.0f} s left"))
+            self.cut.append((what, f"takes about {seconds:.2g} s, and {left:.0f} s were left"))
             return False
         self.tell(what)
         return True
@@ -81,10 +81,10 @@ class Record:
         )
 
     def table(self) -> pd.DataFrame:
-        """bench.csv, with what each method took to compile."""
+        """bench.csv, with what each method took to compile; empty for what is not ours."""
         without = [name for name in COLUMNS if name != "compile_s"]
         made = pd.DataFrame(self.rows, columns=without)
-        return made.assign(compile_s=made["method"].map(self.compile_s).fillna(0.0))[list(COLUMNS)]
+        return made.assign(compile_s=made["method"].map(self.compile_s))[list(COLUMNS)]
 
     def untimed(self, configuration: str, method: str, setting: str, kind: str, error: float, timing: Timing) -> None:
         """A row of bench.csv of a method without simulated time, which leaves the seconds an hour empty."""

@@ -34,7 +34,7 @@ def _chain() -> None:
 
 
 def _spectral() -> None:
-    simulate(load(_TOW).tow, _straight(), harmonics=4)
+    simulate(load(_TOW).tow, _straight(), harmonics=4, companion=False)
 
 
 def _matrix() -> None:

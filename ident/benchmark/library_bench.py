@@ -24,7 +24,7 @@ FLOOR = 1e-7
 _FIRST, _LOWEST, _HIGHEST, _TIGHT, _AIM, _CALL = 10.0, 1e-4, 1e-1, 1e-13, 0.8, 1e-2
 #: A run is cut off after so many times the fastest so far, or after so long [s], but not before it took a few times the
 #: fastest; the first ones have so long [s].
-_HOPELESS, _ENOUGH, _FAIR, _PATIENCE = 12.0, 0.25, 2.0, 30.0
+_HOPELESS, _ENOUGH, _FAIR, _PATIENCE = 12.0, 0.25, 2.0, 4.0
 #: Runs are repeated up to so long [s], and up to so many times the fastest.
 _LONG, _NEAR = 1.0, 1.5
 #: A run at the tightest tolerance, that tells how far two codes' converged runs are apart.

@@ -56,11 +56,16 @@ def peer_note() -> str:
 
 def measure(run: Record, effort: Effort, configurations: Sequence[Configuration]) -> list[Measured]:
     """The chain on every tow of each configuration's first part; those without time are left out."""
-    return [
-        _chain(run, effort, each)
-        for each in configurations
-        if run.has_time(f"{each.name}: the chain on all tows", _ONE_TAKES * effort.scale)
-    ]
+    found = []
+    for each in configurations:
+        what = f"{each.name}: the chain on all tows"
+        if not run.has_time(what, _ONE_TAKES * effort.scale):
+            continue
+        try:
+            found.append(_chain(run, effort, each))
+        except NumericalFailure as error:
+            run.cut.append((what, str(error)))
+    return found
 
 
 def _chain(run: Record, effort: Effort, configuration: Configuration) -> Measured:
@@ -146,6 +151,14 @@ def growth(run: Record, effort: Effort, configuration: Configuration, system: To
     """Time against links and against the record; rows of bench.csv without an error."""
     if not run.has_time("growth", _GROWTH_TAKES * effort.scale):
         return []
+    try:
+        return _growth(run, effort, configuration, system)
+    except NumericalFailure as error:
+        run.cut.append(("growth", str(error)))
+        return []
+
+
+def _growth(run: Record, effort: Effort, configuration: Configuration, system: TowedSystem) -> list[Sizes]:
     ship = tows_compared.tows()["circle"]
     speed, radius = tows_compared.SPEED, tows_compared.RADIUS
     by_links = chain_bench.growth_by_links(system, ship, effort)
@@ -179,7 +192,12 @@ def dense(run: Record, effort: Effort, configuration: Configuration, system: Tow
     if not run.has_time("the dense form", _DENSE_TAKES * effort.scale):
         return pd.DataFrame()
     rows = []
-    for each in chain_bench.dense_form(system, tows_compared.tows()["circle"], effort):
+    try:
+        forms = chain_bench.dense_form(system, tows_compared.tows()["circle"], effort)
+    except NumericalFailure as error:
+        run.cut.append(("the dense form", str(error)))
+        return pd.DataFrame()
+    for each in forms:
         ratio = each.evaluation / each.step
         rows.append((each.links, each.evaluation, each.step, ratio, 2.0 * ratio))
         asked = _TIMES_DENSE.get(each.links)

@@ -14,8 +14,9 @@ from ident.benchmark.spectral_library import Equations, LibraryRun
 from ident.timing import Timing, interleaved
 from models.quantity import NumericalFailure
 from models.spectral import SpectralResult, simulate
-from models.spectral.basis import default_stations, prepare, smallest_stations
-from models.spectral.simulation import advance, local_error
+from models.spectral.basis import Fields, default_stations, prepare, smallest_stations
+from models.spectral.simulation import Stepper, advance, local_error
+from models.statics import StaticShape
 from models.tow import Tow
 from models.trace import Floats, Trace
 
@@ -89,11 +90,19 @@ class Setting:
         """Simulate."""
         if self.stepper == CHOSEN:
             return simulate(tow, ship, tolerance=self.accuracy)
-        size: dict[str, Any] = {"harmonics": self.harmonics, "stations": self.stations}
+        size: dict[str, Any] = {"harmonics": self.harmonics, "stations": self.stations, "companion": False}
         if self.stepper == "newmark":
             return simulate(tow, ship, stepper="newmark", step=self.accuracy, tolerance=CLOSELY, **size)
         size["stepper"] = self.stepper
         return simulate(tow, ship, tolerance=self.accuracy, **size)
+
+    def steps(self, tow: Tow, ship: Trace, shape: StaticShape, fields: Fields) -> SpectralResult:
+        """Run with tables that are ready."""
+        if self.stepper == "newmark":
+            local = local_error("newmark", CLOSELY)
+            return advance(tow, ship, shape, fields, stepper="newmark", local=local, newmark_step=self.accuracy)
+        stepper: Stepper = "runge-kutta" if self.stepper == "runge-kutta" else "implicit"
+        return advance(tow, ship, shape, fields, stepper=stepper, local=local_error(stepper, self.accuracy))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -167,8 +176,8 @@ def settings_of(effort: Effort) -> list[Setting]:
 def work_precision(tow: Tow, ship: Trace, effort: Effort = FULL) -> Precision:
     """Error and time of every setting on one tow."""
     count, tight = effort.finest
-    converged = simulate(tow, ship, harmonics=count, tolerance=tight)
-    half = simulate(tow, ship, harmonics=count // 2, tolerance=4.0 * tight)
+    converged = simulate(tow, ship, harmonics=count, tolerance=tight, companion=False)
+    half = simulate(tow, ship, harmonics=count // 2, tolerance=4.0 * tight, companion=False)
     middle = effort.harmonics[len(effort.harmonics) // 2]
     few = smallest_stations(middle)
     stations = [
@@ -191,8 +200,8 @@ def libraries(tow: Tow, ship: Trace, effort: Effort = FULL) -> Libraries:
     duration = float(ship.t[-1] - ship.t[0])
     whole = simulate(tow, ship, tolerance=_DEFAULT)
     count = whole.harmonics
-    exact = simulate(tow, ship, harmonics=count, tolerance=EXACT, stepper="runge-kutta")
-    check = simulate(tow, ship, harmonics=count, tolerance=10.0 * EXACT)
+    exact = simulate(tow, ship, harmonics=count, tolerance=EXACT, stepper="runge-kutta", companion=False)
+    check = simulate(tow, ship, harmonics=count, tolerance=10.0 * EXACT, companion=False)
     fields = prepare(tow, harmonics=count, shape=whole.shape)
     local = local_error("implicit", _DEFAULT)
     ours = partial(advance, tow, ship, whole.shape, fields, stepper="implicit", local=local)
@@ -218,7 +227,7 @@ def libraries(tow: Tow, ship: Trace, effort: Effort = FULL) -> Libraries:
         uncertainty=error_of(check, exact),
         ours=times[0].over(duration),
         whole=times[1].over(duration),
-        own=_measured(tow, ship, own, exact, effort, []),
+        own=_measured(tow, ship, own, exact, effort, [], (whole.shape, fields)),
         runs=runs,
         best=best,
     )
@@ -273,16 +282,21 @@ def _measured(
     converged: SpectralResult,
     effort: Effort,
     failed: list[tuple[Setting, str]],
+    ready: tuple[StaticShape, Fields] | None = None,
 ) -> list[Point]:
-    """Error and time of settings; those that end in an error go to `failed`."""
+    """Error and time of settings; those that end in an error go to `failed`. With `ready` tables the steps alone."""
+
+    def work(setting: Setting) -> SpectralResult:
+        return setting.run(tow, ship) if ready is None else setting.steps(tow, ship, *ready)
+
     done: list[tuple[Setting, float]] = []
     for setting in settings:
         try:
-            done.append((setting, error_of(setting.run(tow, ship), converged)))
+            done.append((setting, error_of(work(setting), converged)))
         except NumericalFailure as error:
             failed.append((setting, str(error)))
     duration = float(ship.t[-1] - ship.t[0])
-    timings = interleaved([partial(setting.run, tow, ship) for setting, _ in done], effort.repetitions)
+    timings = interleaved([partial(work, setting) for setting, _ in done], effort.repetitions)
     return [
         Point(setting=setting, error=error, timing=timing.over(duration))
         for (setting, error), timing in zip(done, timings, strict=True)

@@ -32,6 +32,8 @@ METHODS = ("RK45", "LSODA", "BDF", "Radau")
 IMPLICIT = ("LSODA", "BDF", "Radau")
 #: Tolerances tried: the first, the loosest and the tightest; share by which one that misses the error is tightened.
 _FIRST, _LOOSEST, _TIGHTEST, _TIGHTER = 1e-4, 1e-1, 1e-11, 0.7
+#: CPU time after which a run of the library is given up [s].
+PATIENCE = 4.0
 #: Step of the differences in the Jacobian, over the size of a coordinate or 1.
 _DIFFERENCE = 1e-7
 
@@ -73,9 +75,12 @@ class Equations:
             np.zeros(END_ROWS),
         )
         self.size = 2 * n
+        self._until = math.inf
 
     def __call__(self, t: float, y: Floats) -> Floats:
         """dy/dt."""
+        if time.thread_time() > self._until:
+            raise TimeoutError
         slope = np.empty(self.size)
         slopes(self._f, self._mass, self._pivot, *self._ship, self._place, *self._work, t, y, slope)
         return slope
@@ -93,20 +98,26 @@ class Equations:
         return found
 
     def solve(self, method: str, tolerance: float, jacobian: bool) -> tuple[Floats, int, float]:
-        """The vehicle's velocity, evaluations and CPU time [s] of a run from rest."""
+        """The vehicle's velocity, evaluations and CPU time [s] of a run from rest; NaN where it fails."""
         options = {"jac": self.jacobian} if jacobian else {}
         self._place[0] = 0
         began = time.thread_time()
-        run = solve_ivp(
-            self,
-            (float(self.t[0]), float(self.t[-1])),
-            np.zeros(self.size),
-            method=method,
-            t_eval=self.t,
-            rtol=tolerance,
-            atol=tolerance,
-            **options,
-        )
+        self._until = began + PATIENCE
+        try:
+            run = solve_ivp(
+                self,
+                (float(self.t[0]), float(self.t[-1])),
+                np.zeros(self.size),
+                method=method,
+                t_eval=self.t,
+                rtol=tolerance,
+                atol=tolerance,
+                **options,
+            )
+        except TimeoutError:
+            return np.full((self.t.size, 2), np.nan), 0, time.thread_time() - began
+        finally:
+            self._until = math.inf
         taken = time.thread_time() - began
         if not run.success:
             return np.full((self.t.size, 2), np.nan), int(run.nfev), taken

@@ -26,6 +26,8 @@ from reports.markdown import significant
 _FOLLOWED = 1800.0
 #: What tells two positions apart where the configured sensor has no noise [m], and two tensions [share].
 _POSITION, _TENSION = 0.1, 1e-3
+#: Share of the tolerance that the comparison is made with, and the changes of velocity [m/s] below which it is blind.
+_CLOSELY, _BLIND = 0.01, 1e-6
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -47,9 +49,13 @@ class Needless:
         """The figure and the advice in a sentence."""
         return (
             f"in {self.duration:g} s of the identification record it changes the vehicle's velocity by "
-            f"{significant(self.velocity, 2)} m/s RMS, its position by {significant(self.position, 2)} m and the "
+            f"{_at_least(self.velocity)} m/s RMS, its position by {significant(self.position, 2)} m and the "
             f"tension at the top by {significant(100.0 * self.tension, 2)} %; {self.advice}"
         )
+
+
+def _at_least(velocity: float) -> str:
+    return significant(velocity, 2) if velocity > _BLIND else f"less than {_BLIND:g}"
 
 
 def needless(configuration: Configuration, ship: Trace, harmonics: int) -> list[Needless]:
@@ -67,13 +73,19 @@ def needless(configuration: Configuration, ship: Trace, harmonics: int) -> list[
     tolerance = configuration.spectral.tolerance
 
     def follow(tow: Tow) -> Trace:
-        return spectral.simulate(tow, ship, tolerance=tolerance, harmonics=harmonics).vehicle
+        # So closely that the steps' errors do not pass for what a term changes.
+        return spectral.simulate(
+            tow, ship, tolerance=_CLOSELY * tolerance, harmonics=harmonics, companion=False
+        ).vehicle
 
     found: list[Needless] = []
     fix = max(configuration.sensor.fix_sigma, _POSITION)
     for key, advice, own, without in _terms(configuration):
+        if key.partition(".")[0] in {each.key for each in found}:
+            continue
+        whole = follow(own)
         try:
-            change = _change(follow(own), follow(without))
+            change = _change(whole, follow(without))
         except (InvalidInput, NumericalFailure):
             # What cannot be run without a term needs it.
             continue

@@ -106,7 +106,9 @@ def by_spectral(scene: Scene) -> list[Case]:
 
     def runs(of: Tow, winch: Payout | None = None, *, fixed: bool = False) -> Callable[[], Answer]:
         stepper: dict[str, Any] = {"stepper": "newmark", "step": STEP, "tolerance": _TIGHT} if fixed else {}
-        return lambda: _answer(spectral.simulate(of, ship, harmonics=harmonics, winch=winch, **stepper).vehicle)
+        return lambda: _answer(
+            spectral.simulate(of, ship, harmonics=harmonics, winch=winch, companion=False, **stepper).vehicle
+        )
 
     def arrays(of: Tow) -> Callable[[], Sequence[Floats]]:
         def built() -> Sequence[Floats]:

@@ -30,18 +30,22 @@ def catalogue(only: Sequence[str] = (), *, reduced: bool = False) -> list[tuple[
     Raises
     ------
     InvalidInput
-        Cases and tables do not match, or `only` names nothing.
+        Cases and tables do not match, or a word of `only` names nothing that is run.
     """
     every = [case for module in _MODULES for case in import_module(f"ident.stability.{module}").CASES]
     found = pairs(every, expectations(*TABLES))
     for word in only:
+        if not word:
+            raise InvalidInput("A name of a case is empty; give the beginnings of names joined by commas.")
         if not any(case.name.startswith(word) for case in every):
             near = get_close_matches(word, [case.name for case in every], cutoff=0.4)
             groups = dict.fromkeys(case.name.partition("-")[0] for case in every)
             likely = f", such as {', '.join(near)}" if near else ""
             raise InvalidInput(f'No case begins with "{word}"; names begin with {", ".join(groups)}{likely}.')
-    return [
-        (case, row)
-        for case, row in found
-        if (not only or case.name.startswith(tuple(only))) and (case.reduced or not reduced)
-    ]
+    named = [(case, row) for case, row in found if not only or case.name.startswith(tuple(only))]
+    chosen = [(case, row) for case, row in named if case.reduced or not reduced]
+    if not chosen:
+        raise InvalidInput(
+            f"The quick form has none of {', '.join(case.name for case, _ in named)}; leave --quick out."
+        )
+    return chosen

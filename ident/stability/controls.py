@@ -90,8 +90,8 @@ CASES = (
     Case(name="control-no-added-mass", run=no_added_mass),
     Case(name="control-lost-moved-angle", run=lost_moved_angle, reduced=True),
     Case(name="control-unguarded-product", run=unguarded_product, reduced=True),
-    Case(name="control-step-past-the-limit", run=lambda: lumped(_EXPLICIT[1]), reduced=True),
-    Case(name="control-naive-scheme", run=lambda: lumped(_NAIVE[1], implicit=True)),
+    Case(name="control-step-past-the-limit", run=lambda: lumped(_EXPLICIT[1]), reduced=True, may_fail=True),
+    Case(name="control-naive-scheme", run=lambda: lumped(_NAIVE[1], implicit=True), may_fail=True),
     Case(name="twin-explicit-scheme", run=lambda: lumped(_EXPLICIT[0]), reduced=True),
     Case(name="twin-naive-scheme", run=lambda: lumped(_NAIVE[0], implicit=True)),
 )

@@ -25,6 +25,7 @@ from ident.configuration import Configuration
 from ident.manifest import manifest
 from ident.places import new_folder
 from ident.terminal import Progress
+from models.quantity import InvalidInput
 from models.tow import refuse_sections_and_thrust
 from reports.bench_page import BenchMaterial, write_bench_page
 from reports.files import write_json, write_table
@@ -91,9 +92,10 @@ def bench(
     ------
     InvalidInput
         The place cannot be written, or a cable has sections.
-    NumericalFailure
-        A simulation of the chain fails on a tow.
     """
+    names = [each.name for each in configurations]
+    if len(set(names)) < len(names):
+        raise InvalidInput(f"Each configuration once: {', '.join(names)} were given.")
     for each in configurations:
         refuse_sections_and_thrust(each.tow, "The benchmark")
     if effort is None:
@@ -116,7 +118,6 @@ def bench(
         matrix = matrix_record.simulated(run, effort.matrix, matrix)
         compile_s = _compile(run, effort)
         diagrams = [link_joint_record.beside_peer(run, effort.chain, each) for each in chains]
-        names = [each.name for each in configurations]
         told = manifest("bench", first, None, configurations=names, moordyn=peers.version() or "not installed")
         progress("drawing the page", 0.99)
         material = BenchMaterial(

@@ -7,7 +7,7 @@ waves which the step rightly steps over do not count.
 """
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -102,6 +102,10 @@ class Outcome(NamedTuple):
     base: float  # top link's length less what is paid out [m]
 
 
+#: The outcome's whole numbers.
+_COUNTS = ("code", "link", "steps", "rejected", "iterations", "nodes", "row")
+
+
 @inner_kernel
 def curve_at(curve: Curve, t: float, at: int, value: Floats, rate: Floats, second: Floats) -> int:
     """Value, rate and second derivative (d,) at t, searched from interval `at` on; returns the interval."""
@@ -128,8 +132,10 @@ def _ship_strays(ship: Curve, at: int, t: float, h: float, n: int, x: Floats, v:
     for k in range(1, 6):
         s = k / 6.0
         at = curve_at(ship, t + s * h, at, p, rate, second)
+        off = 0.0
         for j in range(d):
-            worst = max(worst, abs(p[j] - hermite(s, h, x[0, n, j], v[0, n, j], x[2, n, j], v[2, n, j])))
+            off += (p[j] - hermite(s, h, x[0, n, j], v[0, n, j], x[2, n, j], v[2, n, j])) ** 2
+        worst = max(worst, math.sqrt(off))
     return worst / h
 
 
@@ -149,10 +155,13 @@ def _local_error(c: Chain, n: int, h: float, s: State, w: Work, dV: Floats, dT: 
     substitute(c, n, w, dV, dT)
     worst, node = 0.0, 0
     for i in range(n):
+        moved, placed = 0.0, 0.0
         for j in range(len(axes)):
-            here = max(abs(dV[i, j]), abs(_E0 * v[0, i, j] + _E1 * v[1, i, j] + _E2 * v[2, i, j]))
-            if not here <= worst:
-                worst, node = here, i
+            moved += dV[i, j] ** 2
+            placed += (_E0 * v[0, i, j] + _E1 * v[1, i, j] + _E2 * v[2, i, j]) ** 2
+        here = math.sqrt(max(moved, placed))
+        if not here <= worst:
+            worst, node = here, i
     return worst, node
 
 
@@ -186,8 +195,39 @@ def begin(nodes: int, settings: Settings, t: float) -> Outcome:
     return Outcome(PAUSED, t, 0, 0.0, 0, 0, 0, 0.0, 0.0, 0.0, 0.0, nodes, h, 0, 0.0)
 
 
-@kernel
 def march(
+    c: Chain, ship: Curve, payout: Curve, s: State, settings: Settings, track: Track, w: Work, so_far: Outcome
+) -> Outcome:
+    """`_march`, whose outcome comes back in an array: a signal that arrives while a tuple of a class of Python's is
+    made of compiled code would end the process."""
+    numbers = np.zeros(len(Outcome._fields))
+    _march_into(c, ship, payout, s, settings, track, w, so_far, numbers)
+    values: dict[str, Any] = dict(zip(Outcome._fields, numbers.tolist(), strict=True))
+    return Outcome(**values | {name: int(values[name]) for name in _COUNTS})
+
+
+@kernel
+def _march_into(
+    c: Chain,
+    ship: Curve,
+    payout: Curve,
+    s: State,
+    settings: Settings,
+    track: Track,
+    w: Work,
+    so_far: Outcome,
+    numbers: Floats,
+) -> None:
+    """March and fill the numbers of the outcome, in the order of its fields."""
+    o = _march(c, ship, payout, s, settings, track, w, so_far)
+    numbers[0], numbers[1], numbers[2], numbers[3], numbers[4] = o.code, o.t, o.link, o.quantity, o.steps
+    numbers[5], numbers[6], numbers[7], numbers[8] = o.rejected, o.iterations, o.drift, o.unexplained
+    numbers[9], numbers[10], numbers[11], numbers[12] = o.snapped, o.turnover, o.nodes, o.h
+    numbers[13], numbers[14] = o.row, o.base
+
+
+@inner_kernel
+def _march(
     c: Chain, ship: Curve, payout: Curve, s: State, settings: Settings, track: Track, w: Work, so_far: Outcome
 ) -> Outcome:
     """March the chain over the output times, from the first point of `s`; s, c and track change in place.

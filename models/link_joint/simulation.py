@@ -32,8 +32,8 @@ FASTEST, SHARPEST = 30.0, 20.0
 _STALLS = 0.7
 #: Cable that moves by this under its own weight turns over too little energy to be judged by its account [m].
 _JUDGED = 0.02
-#: Most steps of a run, and most links times steps: some five minutes.
-STEP_BUDGET, LINK_BUDGET = 5_000_000, 400_000_000
+#: Most steps of a run, and most links times steps: a minute or two.
+STEP_BUDGET, LINK_BUDGET = 5_000_000, 100_000_000
 #: Links times steps after which the march comes back to Python, where it can be interrupted; and least steps.
 AT_A_TIME, LEAST_STEPS = 2_000_000, 100
 MOST_EVENTS = 2000
@@ -138,7 +138,7 @@ def simulate(
     companion
         Whether to estimate the error by a second, coarser run.
     planar
-        Whether a scene that lies in one vertical plane does without the axis across it. The result is the same.
+        Whether a scene that lies in one vertical plane does without the axis across it. Nothing else changes.
 
     Raises
     ------
@@ -149,6 +149,12 @@ def simulate(
         and quantity. With `links` left out also when the tolerance is not met.
     """
     _check(system, ship, links, tolerance, step, payout)
+    span = float(ship.t[-1] - ship.t[0])
+    if companion and step is not None and step > 0.5 * span:
+        raise InvalidInput(
+            f"A step of {step:g} s leaves no coarser run of the {span:g} s to tell the error by; give at most half of "
+            "them."
+        )
     rest = (system.speed if start == "rest" else 0.0, 0.0, 0.0)
     plane = plane_of(current_of(system)[1], rest, ship) if planar else None
     grading = Grading(system, _usual_velocity(system, ship), plane)
@@ -161,9 +167,10 @@ def simulate(
         fine = run(links, tolerance, step)
         if not companion:
             return fine
-        return _with_error(
-            fine, run(max(FEWEST_LINKS, links // 2), 8.0 * tolerance, None if step is None else 2.0 * step)
-        )
+        if links < 2 * FEWEST_LINKS:
+            finer = run(2 * links, tolerance / 8.0, None if step is None else 0.5 * step)
+            return _with_error(fine, finer, 4.0 / 3.0)
+        return _with_error(fine, run(links // 2, 8.0 * tolerance, None if step is None else 2.0 * step))
     local, count = tolerance, FIRST_LINKS
     coarse, before = run(count // 2, 8.0 * local, None if step is None else 2.0 * step), math.inf
     while True:
@@ -180,18 +187,25 @@ def simulate(
                 f"{fine.error:.2g} m/s{events}; ask for a larger tolerance, or give the links and take the error as it "
                 "is."
             )
+        if 4 * (fine.steps + fine.rejected) * sum(fine.links) > LINK_BUDGET:
+            raise NumericalFailure(
+                f"The chain does not reach {tolerance:g} m/s: with {count} links and {fine.steps} steps its error is "
+                f"still {fine.error:.2g} m/s, and twice the links would take more than {LINK_BUDGET:g} links times "
+                "steps; ask for a larger tolerance, or give the links and take the error as it is."
+            )
         coarse, before = fine, fine.error
         count, local, step = 2 * count, local / 8.0, None if step is None else 0.5 * step
 
 
-def _with_error(fine: LinkJointResult, coarse: LinkJointResult) -> LinkJointResult:
-    """The finer run with its error: links and steps converge at second order, a third of the difference is left."""
+def _with_error(fine: LinkJointResult, other: LinkJointResult, share: float = 1.0 / 3.0) -> LinkJointResult:
+    """A run with its error: links and steps converge at second order, so that a third of the difference to a run with
+    half of them is left, or four thirds of that to one with twice as many."""
 
     def worst(one: str) -> float:
-        parts = zip(fine.bodies, coarse.bodies, strict=True)
+        parts = zip(fine.bodies, other.bodies, strict=True)
         return max(float(np.sqrt(np.mean(np.sum((getattr(a, one) - getattr(b, one)) ** 2, axis=1)))) for a, b in parts)
 
-    return replace(fine, error=worst("velocity") / 3.0, position_error=worst("position") / 3.0)
+    return replace(fine, error=share * worst("velocity"), position_error=share * worst("position"))
 
 
 def _run(

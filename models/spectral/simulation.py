@@ -26,11 +26,15 @@ Start = Literal["rest", "steady"]
 
 #: Most steps of a run, accepted and rejected.
 STEP_BUDGET = 5_000_000
+#: Most steps times the square of the sines and a few more, in which a step's cost grows: some minutes.
+WORK_BUDGET, _MORE = 1_000_000_000, 8
 #: Local error per step that a wanted error of the whole record allows, measured on the built-in configurations.
 _LOCAL_SHARE: dict[Stepper, float] = {"implicit": 0.012, "newmark": 0.24, "runge-kutta": 0.24}
 #: Harmonics and tolerance of the companion run, and how much smaller the error of the finer run is at least.
 _COMPANION_HARMONICS, _COMPANION_TOLERANCE, _COMPANION_RATIO = 0.6, 4.0, 0.4
 _REFINEMENTS = 5
+#: That ratio where the series converges at first order.
+_SLOWEST_RATIO = 1.5
 #: Share of the tolerance that the surge may err by before a refinement lengthens the series too.
 _SERIES_SHARE = 0.6
 _MOST_HARMONICS = 160
@@ -42,7 +46,7 @@ class SpectralResult:
 
     `vehicle` is absolute, with its velocity and the tensions at the top and at the vehicle. `amplitudes` (n, 2 + N)
     [m] are (p_b, eta_1, Q_1 ... Q_N) at the samples, counted from `shape`. `error` [m/s] is the estimated RMS error
-    of the vehicle's velocity against a finer run, None where the resolution was given.
+    of the vehicle's velocity, None where no companion run was made.
     """
 
     vehicle: Trace
@@ -58,6 +62,20 @@ class SpectralResult:
     rejected: int
     evaluations: int
     error: float | None
+
+    @property
+    def largest_angle(self) -> float:
+        """Largest turn of the cable from its static shape, at the samples and a few places [rad].
+
+        Deflections count as small: what that costs grows with the square of this angle, and no error here tells it.
+        """
+        x, n = np.linspace(0.0, 1.0, 2 * self.harmonics + 1), np.arange(1, self.harmonics + 1)
+        moved = self.ship.position - self.ship.position[0]
+        dx = moved[:, 0] - self.tow.speed * (self.ship.t - self.ship.t[0])
+        top = float(self.shape.phi[-1])
+        straight = math.cos(top) * moved[:, 2] - math.sin(top) * dx - self.amplitudes[:, 1]
+        bent = self.amplitudes[:, 2:] @ (math.pi * n[:, None] * np.cos(math.pi * n[:, None] * x))
+        return float(np.abs(np.arctan((straight[:, None] + bent) / self.tow.cable.length)).max())
 
     def cable_at(self, sample: int, points: int = 61) -> tuple[Floats, Floats]:
         """x and z [m] of the cable at a sample, vehicle first, (points,) each."""
@@ -96,6 +114,7 @@ def simulate(
     drag_angle: str = "moved",
     end_condition: str = "weak",
     allow_aliasing: bool = False,
+    companion: bool = True,
 ) -> SpectralResult:
     """Simulate the planar motion of a cable and its vehicle under a ship's motion.
 
@@ -107,7 +126,10 @@ def simulate(
         Wanted RMS error of the vehicle's velocity over the record [m/s]. It chooses the harmonics and the steps
         where they are not given, and is checked against a coarser companion run.
     harmonics, stations, step
-        Resolution, where it shall be given: sines, Gauss stations, and the step [s] of Newmark's method.
+        Resolution, where it shall be given: sines, Gauss stations, and the step [s] of Newmark's method, which the
+        others do without. The error is then what it is.
+    companion
+        Whether to estimate the error by a coarser run where the resolution is given.
     start
         ``rest``: steady in the frame that moves at `tow.speed`; ``steady``: the static shape at the ship's mean
         velocity over the first minute.
@@ -135,28 +157,38 @@ def simulate(
         return advance(tow, ship, shape, fields, stepper=stepper, local=local, newmark_step=newmark_step, winch=winch)
 
     local = local_error(stepper, tolerance)
-    longest = float(np.diff(ship.t).max())
-    newmark_step = step if step is not None else min(longest, 40.0 * math.sqrt(tolerance))
-    if harmonics is not None and (stepper != "newmark" or step is not None):
-        return run(harmonics, local, newmark_step)
+    newmark_step = step if step is not None else min(float(np.diff(ship.t).max()), 40.0 * math.sqrt(tolerance))
     sines = harmonics if harmonics is not None else first_harmonics(tow, ship, shape, tolerance)
-    fewer = sines if harmonics is not None else max(3, round(_COMPANION_HARMONICS * sines))
-    coarse = run(fewer, _COMPANION_TOLERANCE * local, newmark_step if step is not None else 2.0 * newmark_step)
+    given = harmonics is not None or (step is not None and stepper == "newmark")
+    if given and not companion:
+        return run(sines, local, newmark_step)
+    if stations is not None:
+        # Refuse a resolution that aliases by its own name, not by the companion's.
+        prepare(tow, harmonics=sines, stations=stations, shape=shape, **options)  # type: ignore[arg-type]
+    fewer = max(min(3, sines - 1), round(_COMPANION_HARMONICS * sines)) if sines > 1 else 2
+    coarse = run(fewer, _COMPANION_TOLERANCE * local, 2.0 * newmark_step)
+    # Of an inclined cable heave too is a matter of the series, which then converges at first order at the worst.
+    ratio = np.full(2, _COMPANION_RATIO if abs(float(shape.phi[0]) - 0.5 * math.pi) < 1e-6 else _SLOWEST_RATIO)
+    before: Floats | None = None
     series = 0.0
     for _ in range(_REFINEMENTS):
         fine = run(sines, local, newmark_step)
-        across, along = _COMPANION_RATIO * _rms_difference(fine, coarse)
+        difference = _rms_difference(fine, coarse)
+        if before is not None and ratio[0] > _COMPANION_RATIO:
+            ratio = np.clip(difference / np.maximum(before - difference, 1e-300), _COMPANION_RATIO, _SLOWEST_RATIO)
+        across, along = ratio * difference
         if fine.harmonics != coarse.harmonics:
             # What the shorter series costs shows across the cable; it stands until the series is lengthened again.
             series = across
         error = math.hypot(max(across, series), along)
-        if error <= tolerance:
+        if error <= tolerance or given:
             return replace(fine, error=error)
-        coarse = fine
+        if sines == _MOST_HARMONICS and series > tolerance:
+            break
+        coarse, before = fine, difference
         local /= _COMPANION_TOLERANCE
-        if step is None:
-            newmark_step *= 0.5
-        if harmonics is None and max(across, series) > _SERIES_SHARE * tolerance:
+        newmark_step *= 0.5
+        if max(across, series) > _SERIES_SHARE * tolerance or (ratio[0] > _COMPANION_RATIO and along > across):
             sines = min(_MOST_HARMONICS, math.ceil(sines / _COMPANION_HARMONICS))
     raise NumericalFailure(
         f"The spectral simulator's estimated error in the vehicle's velocity is still {error:.3g} m/s RMS over the "
@@ -199,6 +231,11 @@ def first_harmonics(tow: Tow, ship: Trace, shape: StaticShape, tolerance: float)
     waves = tow.cable.length / math.pi * math.sqrt(omega * drag / tension)
     wanted = math.ceil((5.2 + 4.3 * waves) * math.pow(1e-4 / tolerance, 0.3))
     return min(_MOST_HARMONICS, max(4, wanted))
+
+
+def budget_of(harmonics: int) -> int:
+    """Most steps of a run with so many sines."""
+    return min(STEP_BUDGET, WORK_BUDGET // (harmonics + _MORE) ** 2)
 
 
 def local_error(stepper: Stepper, tolerance: float) -> float:
@@ -247,16 +284,16 @@ def advance(
     control, payout_t, payout_l = control_arrays(winch, tow.cable.length)
     out, shapes = np.zeros((len(ship), 2 * nb + 3)), np.zeros((len(ship), 2 + N))
     counts, where = np.zeros(4, dtype=np.int64), np.zeros(2)
-    first = min(1.0, float(np.diff(ship.t).min()))
+    first, budget = min(1.0, float(np.diff(ship.t).min())), budget_of(N)
     rest = (control, payout_t, payout_l, out, shapes, counts, where)
     if stepper == "runge-kutta":
-        status = march_explicit(fields, knots, coefficients, ship.t, first, local, STEP_BUDGET, *rest)
+        status = march_explicit(fields, knots, coefficients, ship.t, first, local, budget, *rest)
     elif stepper == "newmark":
-        status = march(fields, knots, coefficients, ship.t, 1, newmark_step, 1e-3 * local, STEP_BUDGET, *rest)
+        status = march(fields, knots, coefficients, ship.t, 1, newmark_step, 1e-3 * local, budget, *rest)
     else:
-        status = march(fields, knots, coefficients, ship.t, 0, first, local, STEP_BUDGET, *rest)
+        status = march(fields, knots, coefficients, ship.t, 0, first, local, budget, *rest)
     if status != DONE:
-        fail(status, where, counts, tow, STEP_BUDGET)
+        fail(status, where, counts, tow, budget)
     elapsed = ship.t - ship.t[0]
     position, velocity = np.zeros((len(ship), 3)), np.zeros((len(ship), 3))
     end_x, end_z = float(shape.x[0]), float(shape.z[0])

@@ -45,7 +45,9 @@ def work_precision(curves: Sequence[Curve], time: str = "CPU time for an hour, s
         axes.set(xscale="log", yscale="log", title=tow, xlabel="RMS velocity error, m/s")
         style.few_log(axes.xaxis, axes.yaxis)
     grid[0, 0].set_ylabel(time)
-    grid[0, 0].legend(loc="best")
+    handles = [each.get_legend_handles_labels() for each in grid[0]]
+    named = dict(pair for lines, texts in handles for pair in zip(texts, lines, strict=True))
+    made.legend(list(named.values()), list(named), loc="outside lower center", ncols=min(4, len(named)))
     return made
 
 

@@ -599,7 +599,9 @@ def test_step_study_of_the_thesis(tmp_path: Path) -> None:
     """Delays near those of many sines, 30.36 s at 2500 m with 160; midpoint formula as the thesis prints it (T 4.1)."""
     ok("step", gallery.STEP_NAME, "--out", str(tmp_path / "out"), "--quiet")
     table = pd.read_csv(tmp_path / "out" / "step.csv").set_index("response")
-    assert table.loc[["500 m", "1000 m", "2500 m"], "measured_s"].tolist() == pytest.approx([8.15, 14.7, 30.36], abs=0.2)
+    assert table.loc[["500 m", "1000 m", "2500 m"], "measured_s"].tolist() == pytest.approx(
+        [8.15, 14.7, 30.36], abs=0.2
+    )
     printed = table["thesis_s"].dropna()
     assert printed.tolist() == [5.7, 10.2, 20.2, 20.2, 17.7, 15.8]
     assert table.loc[printed.index, "midpoint_s"].tolist() == pytest.approx(printed.tolist(), abs=0.15)

@@ -84,7 +84,7 @@ def test_every_kernel_releases_the_lock_divides_as_ieee_and_compiles_late() -> N
         for name, value in vars(importlib.import_module(module.name)).items()
         if isinstance(value, Dispatcher)
     }
-    assert "models.link_joint.march.march" in found
+    assert "models.link_joint.march._march_into" in found
     for name, each in found.items():
         assert each.targetoptions["nogil"] is True, name
         assert each.targetoptions["error_model"] == "numpy", name

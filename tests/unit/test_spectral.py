@@ -227,3 +227,12 @@ def test_slow_motion_of_a_tied_vehicle_is_followed_in_few_steps(
     assert run.error is not None
     assert error < 2.0 * run.error
     assert run.steps < 500
+
+
+def test_the_largest_turn_of_the_cable(configurations: Callable[[str], Tow]) -> None:
+    """A ship that has towed to a steady trail: the cable's steepest turn is at the vehicle, U^2 B/W there."""
+    tow = configurations("mangus-740")
+    t = np.arange(0.0, 6000.0)
+    run = simulate(tow, Trace.along_x(t, 0.2 * (t - 300.0 * -np.expm1(-t / 300.0))))
+    shape = static_shape(replace(tow, speed=0.2))
+    assert run.largest_angle == pytest.approx(0.5 * math.pi - float(shape.phi.min()), rel=0.05)
